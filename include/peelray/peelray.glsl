@@ -1,0 +1,232 @@
+// Tracing rays in a layered depth cube: the `voxel` traversal (docs/frame.md, docs/data.md).
+//
+// Binding-free: the including shader supplies the fetches, before the #include:
+//   uvec2 PEELRAY_TOP(uint i)         the table of 16x16x16-voxel cells
+//   uint  PEELRAY_NODE(uint i)        64 entries per occupied cell of it: 4x4x4-voxel nodes
+//   uint  PEELRAY_VOXEL(uint i)       64 entries per occupied node: voxels
+//   uvec2 PEELRAY_SAMPLE(uint i)      samples, the list of a voxel in a row
+//   uint  PEELRAY_SAMPLE_ID(uint i)   triangle id * 4 + axis of the LDI
+//   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   world-space corners (`exact` only)
+// and may ask for counting with PEELRAY_COUNTERS (a uvec4: steps, lists, samples tested, triangles tested).
+//
+// The data structure is that of irregular grids (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that
+// rasterisation made: every empty cell knows an empty box around it, which a ray leaves in one step.
+#ifndef PEELRAY_GLSL
+#define PEELRAY_GLSL
+
+#include "peelray/cube.h"
+#include "peelray/peelray_sample.glsl"
+
+#ifdef PEELRAY_COUNTERS
+#define PEELRAY_COUNT(component) PEELRAY_COUNTERS.component++
+#else
+#define PEELRAY_COUNT(component)
+#endif
+
+const uint PEELRAY_MISS = 0xffffffffu;
+
+struct PeelrayHit {
+    float t;        ///< in lengths of the ray's direction; +inf: a miss
+    uint triangle;  ///< PEELRAY_MISS: a miss
+    vec2 uv;        ///< barycentric weights of the second and third corner (`exact`)
+};
+
+struct PeelrayRay {
+    vec3 origin;     ///< world units
+    float tmin;
+    vec3 direction;  ///< any length but 0; components may be 0
+    float tmax;
+};
+
+/// Ray against triangle, watertight: an edge is seen the same way from both of its triangles (Woop, Benthin, Wald: Watertight
+/// Ray/Triangle Intersection, JCGT 2013). `origin` and corners relative to one point near all of them.
+bool peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+    const vec3 size = abs(direction);
+    const bool x_largest = size.x >= size.y && size.x >= size.z;
+    const bool y_largest = !x_largest && size.y >= size.z;
+    // Cyclic permutation that brings the largest component to z.
+#define PEELRAY_PERMUTE(v) (x_largest ? (v).yzx : (y_largest ? (v).zxy : (v)))
+    const vec3 d = PEELRAY_PERMUTE(direction);
+    precise vec3 A = PEELRAY_PERMUTE(a - origin);
+    precise vec3 B = PEELRAY_PERMUTE(b - origin);
+    precise vec3 C = PEELRAY_PERMUTE(c - origin);
+#undef PEELRAY_PERMUTE
+    const float sz = 1.0 / d.z;
+    const vec2 shear = d.xy * sz;
+    precise vec2 p = A.xy - shear * A.z;
+    precise vec2 q = B.xy - shear * B.z;
+    precise vec2 r = C.xy - shear * C.z;
+    precise float u = r.x * q.y - r.y * q.x;
+    precise float v = p.x * r.y - p.y * r.x;
+    precise float w = q.x * p.y - q.y * p.x;
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
+    const float det = u + v + w;
+    if (det == 0.0) return false;
+    const float inv = 1.0 / det;
+    t = (u * A.z + v * B.z + w * C.z) * inv * sz;
+    uv = vec2(v, w) * inv;
+    return !isinf(inv);
+}
+
+/// First hit of a ray in the cube with tmin < t < tmax; `any_hit`: some hit. `skip`: a triangle that does not count
+/// (PEELRAY_MISS: none). `planar`: hits on the samples' planes instead of exact hits.
+///
+/// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
+/// components may count as zero.
+PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, bool planar) {
+    PeelrayHit hit = PeelrayHit(uintBitsToFloat(0x7f800000u), PEELRAY_MISS, vec2(0));
+    const vec3 d_abs = abs(ray.direction);
+    const float d_max = max(d_abs.x, max(d_abs.y, d_abs.z));
+    // Written so that a NaN fails.
+    if (!(d_max > 0.0 && d_max < 3e38 && d_abs.x <= d_max && d_abs.y <= d_max && d_abs.z <= d_max)) return hit;
+    const vec3 o_abs = abs(ray.origin);
+    if (!(ray.tmin < ray.tmax && abs(ray.tmin) < 3e38 && o_abs.x < 3e38 && o_abs.y < 3e38 && o_abs.z < 3e38)) return hit;
+
+    // Voxel space: position o + s * d, where d is the ray's direction times a power of two (exact), largest component in
+    // [1, 2), and s = t * s_per_t.
+    const int exponent = int((floatBitsToUint(d_max) >> 23) & 255u) - 127;
+    const vec3 d = exponent < -126 ? ray.direction / d_max : ldexp(ray.direction, ivec3(-exponent));
+    const float t_scale = exponent < -126 ? d_max : ldexp(1.0, exponent);  // direction = d * t_scale
+    const float s_per_t = t_scale * grid.inv_voxel;
+    const vec3 inv = vec3(1.0) / vec3(abs(d.x) < 1e-12 ? (d.x < 0.0 ? -1e-12 : 1e-12) : d.x,
+                                      abs(d.y) < 1e-12 ? (d.y < 0.0 ? -1e-12 : 1e-12) : d.y,
+                                      abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
+    const vec3 size = vec3(grid.dims);
+
+    // A ray that starts outside the box is moved to it first; fma rounds once, so that a far origin costs no precision.
+    precise vec3 start = ray.origin - grid.origin;
+    vec3 o = start * grid.inv_voxel;
+    vec3 near = min((vec3(0) - o) * inv, (size - o) * inv), far = max((vec3(0) - o) * inv, (size - o) * inv);
+    float s_enter = max(near.x, max(near.y, near.z)), s_exit = min(far.x, min(far.y, far.z));
+    // The division by a tiny s_per_t may overflow: then s is meaningless and so is the ray.
+    float s_begin = max(ray.tmin * s_per_t, s_enter), s_end = min(ray.tmax * s_per_t, s_exit);
+    if (!(s_begin <= s_end)) return hit;
+    float s_shift = 0.0;
+    if (s_enter > 0.0 || s_exit < 0.0) {
+        s_shift = s_begin;
+        const float along = s_shift * grid.voxel;
+        precise vec3 moved = vec3(fma(along, d.x, start.x), fma(along, d.y, start.y), fma(along, d.z, start.z));
+        start = moved;
+        o = start * grid.inv_voxel;
+        s_end -= s_shift;
+        s_begin = 0.0;
+    }
+    const float s_min = ray.tmin * s_per_t - s_shift;
+    float s_best = ray.tmax * s_per_t - s_shift;  // the nearest hit so far, or the end of the ray
+
+    const bvec3 up = greaterThanEqual(d, vec3(0));
+    const vec3 o_inv = o * inv;
+    const ivec3 last = ivec3(grid.dims) - 1;
+    const uvec3 tops = grid.dims >> 4u;
+    float s = s_begin;
+    ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last);
+
+    while (true) {
+        PEELRAY_COUNT(x);
+        // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
+        ivec3 lo = cell, hi = cell;
+        uint list = PEELRAY_MISS;
+        const uvec3 top = uvec3(cell) >> 4u;
+        const uvec2 top_entry = PEELRAY_TOP((top.z * tops.y + top.y) * tops.x + top.x);
+        if ((top_entry.x >> 31u) == 0u) {
+            lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
+            hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;
+        } else {
+            const uvec3 in_top = (uvec3(cell) >> 2u) & 3u;
+            const uint node = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
+            uint box = node;
+            int scale = 2;
+            if ((node >> 31u) != 0u) {
+                const uvec3 in_node = uvec3(cell) & 3u;
+                const uint voxel = PEELRAY_VOXEL((node & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
+                box = voxel;
+                scale = 0;
+                if ((voxel >> 31u) != 0u) list = voxel & 0x7fffffffu;
+            }
+            if (list == PEELRAY_MISS) {
+                const ivec3 base = (cell >> (scale + 2)) << (scale + 2);
+                const ivec3 box_lo = ivec3(uvec3(box, box >> 2u, box >> 4u) & 3u);
+                const ivec3 box_hi = ivec3(uvec3(box >> 6u, box >> 8u, box >> 10u) & 3u);
+                lo = base + (box_lo << scale);
+                hi = base + (box_hi << scale) + (1 << scale) - 1;
+            }
+        }
+        const vec3 exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * inv - o_inv;
+        const float s_out = min(exits.x, min(exits.y, exits.z));
+
+        if (list != PEELRAY_MISS) {
+            PEELRAY_COUNT(y);
+            const vec3 o_cell = o - vec3(cell);
+            bool more = true;
+            for (uint j = list; more; j++) {
+                PEELRAY_COUNT(z);
+                // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
+                // word 1: slopes (2x14 bits: [-1, 1]), axis (2 bits), last of its list (1 bit)
+                const uvec2 data = PEELRAY_SAMPLE(j);
+                more = (data.y >> 30u & 1u) == 0u;
+                const uint axis = data.y >> 28u & 3u;
+                const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
+                const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (1.0 / 8191.0);
+                const vec3 dr = axis == 0u ? d.yzx : (axis == 1u ? d.zxy : d);
+                const vec3 or = axis == 0u ? o_cell.yzx : (axis == 1u ? o_cell.zxy : o_cell);
+                const vec2 centre = or.xy - 0.5;
+                const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
+                const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
+                const vec2 at = centre + s_plane * dr.xy;
+                if (planar) {
+                    if (s_plane > s_min && s_plane < s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
+                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                        if (id != skip) {
+                            s_best = s_plane;
+                            hit.triangle = id;
+                        }
+                    }
+                    continue;
+                }
+                // Conservative: a hit inside this voxel lies on the sample's plane between the ray's entry and exit. The
+                // steeper the plane to the ray, the better it is known; edge-on (1/0) everything passes.
+                const float slack = PEELRAY_POSITION_SLACK + PEELRAY_PLANE_SLACK * abs(inv_den);
+                if (s_plane < s - slack || s_plane > min(s_out, s_best) + slack) continue;
+                if (slack < 0.02) {
+                    const uvec2 bit = uvec2(clamp(at * 4.0 + 2.0, vec2(0), vec2(3)));
+                    if ((data.x >> (16u + bit.y * 4u + bit.x) & 1u) == 0u) continue;
+                }
+                const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                if (id == skip) continue;
+                PEELRAY_COUNT(w);
+                vec3 a, b, c;
+                PEELRAY_TRIANGLE(id, a, b, c);
+                float t;
+                vec2 uv;
+                if (!peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv)) continue;
+                const float s_hit = t * grid.inv_voxel;
+                if (s_hit > s_min && s_hit < s_best) {
+                    s_best = s_hit;
+                    hit.triangle = id;
+                    hit.uv = uv;
+                }
+            }
+            if (hit.triangle != PEELRAY_MISS && (any_hit || s_best <= s_out)) break;
+        }
+        if (s_out >= min(s_end, s_best)) break;
+
+        // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the box.
+        s = max(s, s_out);
+        const ivec3 floor_at = ivec3(floor(o + s * d));
+        const ivec3 clamped = ivec3(up.x ? min(hi.x, max(cell.x, floor_at.x)) : max(lo.x, min(cell.x, floor_at.x)),
+                                    up.y ? min(hi.y, max(cell.y, floor_at.y)) : max(lo.y, min(cell.y, floor_at.y)),
+                                    up.z ? min(hi.z, max(cell.z, floor_at.z)) : max(lo.z, min(cell.z, floor_at.z)));
+        cell = clamped;
+        if (exits.x <= exits.y && exits.x <= exits.z)
+            cell.x = up.x ? hi.x + 1 : lo.x - 1;
+        else if (exits.y <= exits.z)
+            cell.y = up.y ? hi.y + 1 : lo.y - 1;
+        else
+            cell.z = up.z ? hi.z + 1 : lo.z - 1;
+        if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, last))) break;
+    }
+    if (hit.triangle != PEELRAY_MISS) hit.t = (s_best + s_shift) / s_per_t;
+    return hit;
+}
+
+#endif

@@ -1,0 +1,16 @@
+// What every shader of Peelray includes first.
+#ifndef PEELRAY_COMMON_GLSL
+#define PEELRAY_COMMON_GLSL
+
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// A storage buffer `name` of elements of `type`. Commands::run finds it by its name, less "_block".
+#define BUFFER(access, index, type, name) \
+    layout(set = 0, binding = index, scalar) access buffer name##_block { type name[]; };
+
+// The pass's parameters: one struct from params.h.
+#define PARAMS(type) \
+    layout(push_constant, scalar) uniform params_block { type params; };
+
+#endif

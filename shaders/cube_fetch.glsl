@@ -1,0 +1,25 @@
+// The cube's buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 6.
+#ifndef CUBE_FIRST_BINDING
+#define CUBE_FIRST_BINDING 0
+#endif
+BUFFER(readonly, CUBE_FIRST_BINDING + 0, uvec2, top_table)
+BUFFER(readonly, CUBE_FIRST_BINDING + 1, uint, node_table)
+BUFFER(readonly, CUBE_FIRST_BINDING + 2, uint, voxel_table)
+BUFFER(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
+BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
+BUFFER(readonly, CUBE_FIRST_BINDING + 5, vec3, positions)
+BUFFER(readonly, CUBE_FIRST_BINDING + 6, uvec3, triangles)
+
+#define PEELRAY_TOP(i) top_table[i]
+#define PEELRAY_NODE(i) node_table[i]
+#define PEELRAY_VOXEL(i) voxel_table[i]
+#define PEELRAY_SAMPLE(i) samples[i]
+#define PEELRAY_SAMPLE_ID(i) sample_ids[i]
+
+void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
+    const uvec3 corners = triangles[id];
+    a = positions[corners.x];
+    b = positions[corners.y];
+    c = positions[corners.z];
+}
+#define PEELRAY_TRIANGLE(id, a, b, c) cubeTriangle(id, a, b, c)

@@ -1,0 +1,30 @@
+// The 64 node entries of each occupied 16x16x16 cell: an occupied node's number, or an empty node's box.
+#version 460
+#include "ldc_common.glsl"
+layout(local_size_x = 64) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, LdcCounters, counters)
+BUFFER(readonly, 1, uvec2, node_masks)
+BUFFER(readonly, 2, uvec2, sums)
+BUFFER(readonly, 3, uint, top_cells)
+BUFFER(writeonly, 4, uint, node_table)
+BUFFER(writeonly, 5, uint, node_cells)
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex;
+    const uint count = min(counters[0].tops, params.top_capacity);
+    for (uint i = gl_WorkGroupID.x; i < count; i += params.workers) {
+        const uint top = top_cells[i];
+        const uvec2 mask = node_masks[top];
+        uint entry;
+        if (ldcMaskBit(mask, lane)) {
+            const uint node = sums[top].y + ldcMaskRank(mask, lane);
+            entry = 0x80000000u | node;
+            const uvec3 cell = ldcTopCell(top, params.grid.dims) * 4u + ldcCell64(lane);
+            if (node < params.node_capacity) node_cells[node] = cell.x | cell.y << 10u | cell.z << 20u;
+        } else {
+            entry = ldcGrowBox(mask, lane);
+        }
+        node_table[i * 64u + lane] = entry;
+    }
+}

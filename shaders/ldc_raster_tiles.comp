@@ -1,0 +1,41 @@
+// Rasterises the tiles of large triangles: one workgroup per tile, four pixels per thread.
+#version 460
+#include "common.glsl"
+#include "params.h"
+layout(local_size_x = 64) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, vec3, positions)
+BUFFER(readonly, 1, uvec3, triangles)
+BUFFER(, 2, LdcCounters, counters)
+BUFFER(, 3, uint, node_masks)
+BUFFER(writeonly, 4, LdcFragment, fragments)
+BUFFER(readonly, 5, uvec2, tiles)
+#include "ldc_emit.glsl"
+#include "ldc_big.glsl"
+
+void main() {
+    const bool planar = params.planar != 0u;
+    const uint tile_count = min(counters[0].tiles, params.tile_capacity);
+    for (uint i = gl_WorkGroupID.x; i < tile_count; i += params.workers) {
+        const uint id = tiles[i].x;
+        const LdcTriangle t = bigTriangle(id);
+        const vec3 reach = ldcReach(t);
+        ivec2 lo, hi;
+        ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
+        const ivec2 corner = ivec2(tiles[i].y & 0xffffu, tiles[i].y >> 16u) * 16;
+        uint count = 0u, covered = 0u;
+        for (uint k = 0u; k < 4u; k++) {
+            const uint j = k * 64u + gl_LocalInvocationIndex;
+            const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
+            if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, planar)) continue;
+            covered |= 1u << k;
+            count += ldcEmitPixel(t, pixel, id, false, 0u);
+        }
+        uint position = ldcReserve(count);
+        for (uint k = 0u; k < 4u; k++) {
+            if ((covered >> k & 1u) == 0u) continue;
+            const uint j = k * 64u + gl_LocalInvocationIndex;
+            position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, true, position);
+        }
+    }
+}

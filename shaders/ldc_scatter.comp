@@ -1,0 +1,16 @@
+// Puts every fragment's id into its voxel's list, in the order in which the atomics happened to run.
+#version 460
+#include "ldc_common.glsl"
+layout(local_size_x = 128) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, LdcCounters, counters)
+BUFFER(readonly, 1, uint, voxel_table)
+BUFFER(readonly, 2, LdcFragment, fragments)
+BUFFER(writeonly, 3, uint, unsorted_ids)
+
+void main() {
+    if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
+    const uint count = min(counters[0].fragments, params.fragment_capacity);
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += params.workers * 128u)
+        unsorted_ids[(voxel_table[fragments[i].top] & 0x7fffffffu) + fragments[i].local] = fragments[i].id;
+}

@@ -1,0 +1,31 @@
+// Sorts the short lists by id, so that the same input always gives the same order: each fragment counts those before it.
+// Writes the samples.
+#version 460
+#include "ldc_common.glsl"
+layout(local_size_x = 128) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, LdcCounters, counters)
+BUFFER(readonly, 1, uint, voxel_table)
+BUFFER(readonly, 2, LdcFragment, fragments)
+BUFFER(readonly, 3, uint, unsorted_ids)
+BUFFER(readonly, 4, uint, voxel_counts)
+BUFFER(readonly, 5, uint, node_cells)
+BUFFER(readonly, 6, vec3, positions)
+BUFFER(readonly, 7, uvec3, triangles)
+BUFFER(writeonly, 8, uvec2, samples)
+BUFFER(writeonly, 9, uint, sample_ids)
+#include "ldc_place.glsl"
+
+void main() {
+    if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
+    const uint count = min(counters[0].fragments, params.fragment_capacity);
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += params.workers * 128u) {
+        const uint voxel = fragments[i].top, id = fragments[i].id;
+        const uint length = voxel_counts[voxel];
+        if (length > LDC_LONG_LIST) continue;
+        const uint start = voxel_table[voxel] & 0x7fffffffu;
+        uint rank = 0u;
+        for (uint j = start; j < start + length; j++) rank += unsorted_ids[j] < id ? 1u : 0u;
+        placeSample(start + rank, id, voxel, rank + 1u == length);
+    }
+}

@@ -1,0 +1,2 @@
+// Shared by the scan_* passes: the number of elements, known on the host or counted on the GPU.
+uint scanCount() { return params.counter == SCAN_NO_COUNTER ? params.capacity : min(params.capacity, counters[params.counter]); }

@@ -1,0 +1,24 @@
+// Traces a queue of rays in the cube.
+#version 460
+#include "common.glsl"
+#include "params.h"
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool any_hit = false;
+layout(constant_id = 1) const bool planar = false;
+PARAMS(TraceParams)
+#include "cube_fetch.glsl"
+BUFFER(readonly, 7, Ray, rays)
+BUFFER(readonly, 8, uint, skip)
+BUFFER(readonly, 9, uint, queue)
+BUFFER(writeonly, 10, Hit, hits)
+#include "peelray/peelray.glsl"
+
+void main() {
+    const uint i = params.first + gl_GlobalInvocationID.x;
+    const uint count = params.counted != 0u ? min(params.count, queue[params.counter]) : params.count;
+    if (i >= count) return;
+    const Ray ray = rays[i];
+    const PeelrayHit hit = peelrayTrace(params.grid, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax),
+                                        params.skips != 0u ? skip[i] : PEELRAY_MISS, any_hit, planar);
+    hits[i] = Hit(hit.t, hit.triangle, hit.uv.x, hit.uv.y);
+}

@@ -1,0 +1,123 @@
+#include "gpu/buffer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.h"
+
+namespace peelray {
+
+Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
+    : device_(&device), name_(std::move(name)), bytes_(std::max<uint64_t>(bytes, 16)) {
+    if (where == Where::device && bytes_ > device.limits().maxStorageBufferRange)
+        fail("{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller --ldc or --size, or another --device",
+             name_, double(bytes_) / (1 << 20), device.info().name, double(device.limits().maxStorageBufferRange) / (1 << 20));
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = bytes_;
+    info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    if (where == Where::device) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    check_vulkan(device.vk.vkCreateBuffer(device.handle, &info, nullptr, &handle_), "creating the buffer " + name_);
+    try {
+        VkMemoryRequirements needs;
+        device.vk.vkGetBufferMemoryRequirements(device.handle, handle_, &needs);
+        const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        const bool device_local = where == Where::device;
+        memory_ = device.allocate(needs, device_local ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) : host,
+                                  where == Where::readback ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT) : 0, name_);
+        allocated_ = needs.size;
+        check_vulkan(device.vk.vkBindBufferMemory(device.handle, handle_, memory_, 0), "binding the buffer " + name_);
+        if (!device_local) {
+            void* pointer = nullptr;
+            check_vulkan(device.vk.vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &pointer), "mapping the buffer " + name_);
+            mapped_ = static_cast<std::byte*>(pointer);
+        }
+    } catch (...) {
+        reset();
+        throw;
+    }
+}
+
+void Buffer::reset() {
+    if (!device_) return;
+    if (handle_) device_->vk.vkDestroyBuffer(device_->handle, handle_, nullptr);
+    if (memory_) device_->release(memory_, allocated_);
+    handle_ = VK_NULL_HANDLE;
+    memory_ = VK_NULL_HANDLE;
+    bytes_ = allocated_ = 0;
+    mapped_ = nullptr;
+    device_ = nullptr;
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    if (this == &other) return *this;
+    reset();
+    device_ = std::exchange(other.device_, nullptr);
+    name_ = std::move(other.name_);
+    handle_ = std::exchange(other.handle_, VkBuffer(VK_NULL_HANDLE));
+    memory_ = std::exchange(other.memory_, VkDeviceMemory(VK_NULL_HANDLE));
+    bytes_ = std::exchange(other.bytes_, 0);
+    allocated_ = std::exchange(other.allocated_, 0);
+    mapped_ = std::exchange(other.mapped_, nullptr);
+    return *this;
+}
+
+void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64_t bytes) {
+    if (buffer && buffer.bytes() >= bytes) return;
+    buffer.reset();  // first, so that both never live at once
+    buffer = Buffer(device, name, bytes);
+}
+
+Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage,
+                 VkImageAspectFlags aspect)
+    : device_(&device), width_(width), height_(height) {
+    VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {width, height, 1};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = usage;
+    check_vulkan(device.vk.vkCreateImage(device.handle, &info, nullptr, &handle_), "creating the image " + name);
+    try {
+        VkMemoryRequirements needs;
+        device.vk.vkGetImageMemoryRequirements(device.handle, handle_, &needs);
+        memory_ = device.allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, name);
+        allocated_ = needs.size;
+        check_vulkan(device.vk.vkBindImageMemory(device.handle, handle_, memory_, 0), "binding the image " + name);
+        VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+        view.image = handle_;
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.format = format;
+        view.subresourceRange = {aspect, 0, 1, 0, 1};
+        check_vulkan(device.vk.vkCreateImageView(device.handle, &view, nullptr, &view_), "viewing the image " + name);
+    } catch (...) {
+        reset();
+        throw;
+    }
+}
+
+void Image2D::reset() {
+    if (!device_) return;
+    if (view_) device_->vk.vkDestroyImageView(device_->handle, view_, nullptr);
+    if (handle_) device_->vk.vkDestroyImage(device_->handle, handle_, nullptr);
+    if (memory_) device_->release(memory_, allocated_);
+    view_ = VK_NULL_HANDLE;
+    handle_ = VK_NULL_HANDLE;
+    memory_ = VK_NULL_HANDLE;
+    device_ = nullptr;
+}
+
+Image2D& Image2D::operator=(Image2D&& other) noexcept {
+    if (this == &other) return *this;
+    reset();
+    device_ = std::exchange(other.device_, nullptr);
+    handle_ = std::exchange(other.handle_, VkImage(VK_NULL_HANDLE));
+    view_ = std::exchange(other.view_, VkImageView(VK_NULL_HANDLE));
+    memory_ = std::exchange(other.memory_, VkDeviceMemory(VK_NULL_HANDLE));
+    allocated_ = other.allocated_;
+    width_ = other.width_;
+    height_ = other.height_;
+    return *this;
+}
+
+}  // namespace peelray

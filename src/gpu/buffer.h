@@ -1,0 +1,67 @@
+// Device-local memory, and the picture that the rasteriser draws into.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "gpu/device.h"
+
+namespace peelray {
+
+/// A device-local storage buffer (also transfer source and target, and indirect arguments). Movable, freed when destroyed.
+class Buffer {
+  public:
+    enum class Where { device, upload, readback };  ///< upload and readback are mapped staging memory
+
+    Buffer() = default;
+    /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name` tells for what.
+    Buffer(Device& device, std::string name, uint64_t bytes, Where where = Where::device);
+    ~Buffer() { reset(); }
+    Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+    Buffer& operator=(Buffer&& other) noexcept;
+
+    void reset();
+    VkBuffer handle() const { return handle_; }
+    uint64_t bytes() const { return bytes_; }
+    const std::string& name() const { return name_; }
+    std::byte* mapped() const { return mapped_; }
+    explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+
+  private:
+    Device* device_ = nullptr;
+    std::string name_;
+    VkBuffer handle_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    uint64_t bytes_ = 0, allocated_ = 0;
+    std::byte* mapped_ = nullptr;
+};
+
+/// Makes `buffer` hold at least `bytes`; its contents are lost when it grows.
+void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64_t bytes);
+
+/// A 2-D image with its view.
+class Image2D {
+  public:
+    Image2D() = default;
+    Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage,
+            VkImageAspectFlags aspect);
+    ~Image2D() { reset(); }
+    Image2D(Image2D&& other) noexcept { *this = std::move(other); }
+    Image2D& operator=(Image2D&& other) noexcept;
+
+    void reset();
+    VkImage handle() const { return handle_; }
+    VkImageView view() const { return view_; }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+
+  private:
+    Device* device_ = nullptr;
+    VkImage handle_ = VK_NULL_HANDLE;
+    VkImageView view_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    uint64_t allocated_ = 0;
+    uint32_t width_ = 0, height_ = 0;
+};
+
+}  // namespace peelray

@@ -1,0 +1,350 @@
+#include "gpu/commands.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/error.h"
+
+namespace peelray {
+namespace {
+
+constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
+constexpr uint32_t kTimersPerPool = 512;
+constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
+
+}  // namespace
+
+Commands::Commands(Device& device) : device_(device) {
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                 device.queue_family};
+    check_vulkan(device.vk.vkCreateCommandPool(device.handle, &pool, nullptr, &pool_), "creating a command pool");
+    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+    check_vulkan(device.vk.vkAllocateCommandBuffers(device.handle, &info, &commands_), "creating a command buffer");
+    VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    check_vulkan(device.vk.vkCreateFence(device.handle, &fence, nullptr, &fence_), "creating a fence");
+}
+
+Commands::~Commands() {
+    for (auto pool : set_pools_) device_.vk.vkDestroyDescriptorPool(device_.handle, pool, nullptr);
+    for (auto pool : query_pools_) device_.vk.vkDestroyQueryPool(device_.handle, pool, nullptr);
+    device_.vk.vkDestroyFence(device_.handle, fence_, nullptr);
+    device_.vk.vkDestroyCommandPool(device_.handle, pool_, nullptr);
+}
+
+void Commands::begin() {
+    if (recording_) return;
+    recording_ = true;
+    check_vulkan(device_.vk.vkResetCommandPool(device_.handle, pool_, 0), "resetting a command pool");
+    for (auto pool : set_pools_) device_.vk.vkResetDescriptorPool(device_.handle, pool, 0);
+    set_pool_ = 0;
+    timed_.clear();
+    accesses_.clear();
+    VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+    check_vulkan(device_.vk.vkBeginCommandBuffer(commands_, &info), "recording commands");
+    barrier_if(true);  // earlier submissions' writes
+}
+
+void Commands::touch(VkBuffer buffer, bool reads, bool writes, bool& hazard) {
+    const auto found = accesses_.find(buffer);
+    if (found == accesses_.end()) return;
+    hazard |= (found->second.written && (reads || writes)) || (found->second.read && writes);
+}
+
+void Commands::barrier_if(bool hazard) {
+    if (!hazard) return;
+    const VkPipelineStageFlags2 work = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+                                       VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = work;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = work;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    device_.vk.vkCmdPipelineBarrier2(commands_, &info);
+    accesses_.clear();
+}
+
+VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
+    for (;; set_pool_++) {
+        if (set_pool_ == set_pools_.size()) {
+            const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet};
+            VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 1, &size};
+            VkDescriptorPool pool = VK_NULL_HANDLE;
+            check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool), "creating a descriptor pool");
+            set_pools_.push_back(pool);
+        }
+        VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, set_pools_[set_pool_], 1, &layout};
+        VkDescriptorSet set = VK_NULL_HANDLE;
+        const VkResult result = device_.vk.vkAllocateDescriptorSets(device_.handle, &info, &set);
+        if (result == VK_SUCCESS) return set;
+        if (result != VK_ERROR_OUT_OF_POOL_MEMORY && result != VK_ERROR_FRAGMENTED_POOL) check_vulkan(result, "allocating descriptors");
+    }
+}
+
+VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard) {
+    const auto& wanted = pass.interface().bindings;
+    if (bindings.size() != wanted.size())
+        fail("the pass {} has {} bindings but was given {} (a programming error)", pass.name(), wanted.size(), bindings.size());
+    const VkDescriptorSet set = allocate_set(pass.set_layout());
+    std::vector<VkDescriptorBufferInfo> infos(wanted.size());
+    std::vector<VkWriteDescriptorSet> writes;
+    for (size_t i = 0; i < wanted.size(); i++) {
+        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted[i].name; });
+        if (given == bindings.end()) fail("the pass {} was not given '{}' (a programming error)", pass.name(), wanted[i].name);
+        if (!given->buffer) fail("the pass {} was given no buffer for '{}' (a programming error)", pass.name(), wanted[i].name);
+        infos[i] = {given->buffer.handle(), 0, VK_WHOLE_SIZE};
+        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, wanted[i].binding, 0, 1,
+                                   VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, nullptr, &infos[i], nullptr};
+        writes.push_back(write);
+        touch(given->buffer.handle(), wanted[i].reads, wanted[i].writes, hazard);
+    }
+    device_.vk.vkUpdateDescriptorSets(device_.handle, uint32_t(writes.size()), writes.data(), 0, nullptr);
+    return set;
+}
+
+void Commands::mark(std::span<const Binding> bindings, const PassBase& pass) {
+    for (const auto& wanted : pass.interface().bindings) {
+        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
+        auto& access = accesses_[given->buffer.handle()];
+        access.read |= wanted.reads;
+        access.written |= wanted.writes;
+    }
+}
+
+void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
+                      const Buffer* arguments, uint64_t offset) {
+    if (bytes != pass.interface().push_constant_bytes)
+        fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
+             pass.interface().push_constant_bytes, bytes);
+    const auto& most = device_.limits().maxComputeWorkGroupCount;
+    if (!arguments && (groups.x > most[0] || groups.y > most[1] || groups.z > most[2]))
+        fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc", pass.name(), groups.x,
+             groups.y, groups.z, device_.info().name);
+    begin();
+    bool hazard = false;
+    const VkDescriptorSet set = bind(pass, bindings, hazard);
+    if (arguments) touch(arguments->handle(), true, false, hazard);
+    barrier_if(hazard);
+    mark(bindings, pass);
+    if (arguments) accesses_[arguments->handle()].read = true;
+
+    label(pass.name());
+    begin_timer(pass.name());
+    device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
+    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &set, 0, nullptr);
+    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+    if (arguments)
+        device_.vk.vkCmdDispatchIndirect(commands_, arguments->handle(), offset);
+    else
+        device_.vk.vkCmdDispatch(commands_, groups.x, groups.y, groups.z);
+    end_timer();
+    end_label();
+}
+
+void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, uint32_t vertices,
+                           const Image2D& color, const Image2D& depth, const Buffer& target) {
+    if (bytes != pass.interface().push_constant_bytes)
+        fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
+             pass.interface().push_constant_bytes, bytes);
+    begin();
+    bool hazard = false;
+    const VkDescriptorSet set = bind(pass, bindings, hazard);
+    touch(target.handle(), false, true, hazard);
+    barrier_if(hazard);
+    mark(bindings, pass);
+    accesses_[target.handle()].written = true;
+
+    auto transition = [&](VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) {
+        VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+        const VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        barrier.srcStageMask = barrier.dstStageMask = stages;
+        barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+        barrier.oldLayout = from;
+        barrier.newLayout = to;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = image;
+        barrier.subresourceRange = {aspect, 0, 1, 0, 1};
+        VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+        info.imageMemoryBarrierCount = 1;
+        info.pImageMemoryBarriers = &barrier;
+        device_.vk.vkCmdPipelineBarrier2(commands_, &info);
+    };
+    label(pass.name());
+    begin_timer(pass.name());
+    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    transition(depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+
+    VkRenderingAttachmentInfo color_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    color_info.imageView = color.view();
+    color_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    color_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    color_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    color_info.clearValue.color.uint32[0] = ~0u;
+    VkRenderingAttachmentInfo depth_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    depth_info.imageView = depth.view();
+    depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    depth_info.clearValue.depthStencil.depth = 0;
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea.extent = {color.width(), color.height()};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachments = &color_info;
+    rendering.pDepthAttachment = &depth_info;
+    const VkViewport viewport{0, 0, float(color.width()), float(color.height()), 0, 1};
+    const VkRect2D scissor{{0, 0}, {color.width(), color.height()}};
+    device_.vk.vkCmdBeginRendering(commands_, &rendering);
+    device_.vk.vkCmdSetViewport(commands_, 0, 1, &viewport);
+    device_.vk.vkCmdSetScissor(commands_, 0, 1, &scissor);
+    device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.pipeline());
+    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0, nullptr);
+    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+    device_.vk.vkCmdDraw(commands_, vertices, 1, 0, 0);
+    device_.vk.vkCmdEndRendering(commands_);
+
+    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {color.width(), color.height(), 1};
+    device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1, &region);
+    end_timer();
+    end_label();
+}
+
+void Commands::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint64_t bytes) {
+    begin();
+    bool hazard = false;
+    touch(buffer.handle(), false, true, hazard);
+    barrier_if(hazard);
+    accesses_[buffer.handle()].written = true;
+    begin_timer("fill " + buffer.name());
+    device_.vk.vkCmdFillBuffer(commands_, buffer.handle(), offset, bytes == ~0ull ? VK_WHOLE_SIZE : bytes, value);
+    end_timer();
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset, uint64_t to_offset) {
+    begin();
+    bool hazard = false;
+    touch(from.handle(), true, false, hazard);
+    touch(to.handle(), false, true, hazard);
+    barrier_if(hazard);
+    accesses_[from.handle()].read = true;
+    accesses_[to.handle()].written = true;
+    const VkBufferCopy region{from_offset, to_offset, bytes};
+    device_.vk.vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
+}
+
+void Commands::label(const std::string& name) {
+    if (!device_.labels || !vkCmdBeginDebugUtilsLabelEXT) return;
+    VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name.c_str(), {}};
+    vkCmdBeginDebugUtilsLabelEXT(commands_, &info);
+}
+
+void Commands::end_label() {
+    if (device_.labels && vkCmdEndDebugUtilsLabelEXT) vkCmdEndDebugUtilsLabelEXT(commands_);
+}
+
+void Commands::begin_group(const std::string& name) {
+    begin();
+    assert(group_.empty());
+    group_ = name;
+    label(name);
+}
+
+void Commands::end_group() {
+    group_.clear();
+    end_label();
+}
+
+void Commands::begin_timer(const std::string& name) {
+    if (device_.timestamp_period() == 0) return;
+    const size_t index = timed_.size();
+    timed_.push_back(group_.empty() ? name : group_ + "/" + name);
+    if (index / kTimersPerPool == query_pools_.size()) {
+        VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = 2 * kTimersPerPool;
+        VkQueryPool pool = VK_NULL_HANDLE;
+        check_vulkan(device_.vk.vkCreateQueryPool(device_.handle, &info, nullptr, &pool), "creating a query pool");
+        query_pools_.push_back(pool);
+    }
+    const VkQueryPool pool = query_pools_[index / kTimersPerPool];
+    const uint32_t query = uint32_t(2 * (index % kTimersPerPool));
+    device_.vk.vkResetQueryPool(device_.handle, pool, query, 2);
+    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool, query);
+}
+
+void Commands::end_timer() {
+    if (device_.timestamp_period() == 0) return;
+    const size_t index = timed_.size() - 1;
+    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, query_pools_[index / kTimersPerPool],
+                                    uint32_t(2 * (index % kTimersPerPool) + 1));
+}
+
+void Commands::read_times() {
+    times_.clear();
+    for (size_t i = 0; i < timed_.size(); i++) {
+        uint64_t ticks[2] = {};
+        check_vulkan(device_.vk.vkGetQueryPoolResults(device_.handle, query_pools_[i / kTimersPerPool], uint32_t(2 * (i % kTimersPerPool)), 2,
+                                                      sizeof ticks, ticks, 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+                     "reading timestamps");
+        times_.push_back({timed_[i], double(ticks[1] - ticks[0]) * device_.timestamp_period() * 1e-6});
+    }
+}
+
+void Commands::submit() {
+    if (!recording_) return;
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &barrier;
+    device_.vk.vkCmdPipelineBarrier2(commands_, &dependency);
+    check_vulkan(device_.vk.vkEndCommandBuffer(commands_), "recording commands");
+    recording_ = false;
+
+    VkCommandBufferSubmitInfo command{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, nullptr, commands_, 0};
+    VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &command;
+    check_vulkan(device_.vk.vkQueueSubmit2(device_.queue, 1, &info, fence_), "submitting commands");
+    check_vulkan(device_.vk.vkWaitForFences(device_.handle, 1, &fence_, VK_TRUE, ~0ull), "waiting for the GPU");
+    check_vulkan(device_.vk.vkResetFences(device_.handle, 1, &fence_), "resetting a fence");
+    read_times();
+}
+
+void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {
+    if (offset + data.size() > buffer.bytes()) fail("an upload to {} is too long (a programming error)", buffer.name());
+    submit();
+    for (uint64_t done = 0; done < data.size();) {
+        const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
+        if (!staging_up_ || staging_up_.bytes() < bytes) staging_up_ = Buffer(device_, "upload staging", bytes, Buffer::Where::upload);
+        std::memcpy(staging_up_.mapped(), data.data() + done, bytes);
+        copy(staging_up_, buffer, bytes, 0, offset + done);
+        submit();
+        done += bytes;
+    }
+}
+
+void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, uint64_t offset) {
+    if (offset + data.size() > buffer.bytes()) fail("a download of {} is too long (a programming error)", buffer.name());
+    submit();
+    for (uint64_t done = 0; done < data.size();) {
+        const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
+        if (!staging_down_ || staging_down_.bytes() < bytes)
+            staging_down_ = Buffer(device_, "readback staging", bytes, Buffer::Where::readback);
+        copy(buffer, staging_down_, bytes, offset + done, 0);
+        submit();
+        std::memcpy(data.data() + done, staging_down_.mapped(), bytes);
+        done += bytes;
+    }
+}
+
+}  // namespace peelray

@@ -1,0 +1,128 @@
+// Recording and running work: the one place where barriers, debug labels and timestamps come from.
+#pragma once
+
+#include <cstring>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/device.h"
+#include "gpu/pass.h"
+
+namespace peelray {
+
+/// A buffer given to the binding of that name in a shader.
+struct Binding {
+    std::string_view name;
+    const Buffer& buffer;
+};
+
+/// How often a compute pass runs, in workgroups.
+struct Groups {
+    uint32_t x = 1, y = 1, z = 1;
+};
+inline Groups groups_for(uint64_t items, uint32_t per_group) { return {uint32_t((items + per_group - 1) / per_group)}; }
+
+/// GPU time of one pass of a submission.
+struct PassTime {
+    std::string name;  ///< "group/pass" inside a group
+    double ms;
+};
+
+/// A recording of passes and copies for one submission. Barriers are derived: a pass waits for earlier ones exactly when it
+/// touches what they wrote, or writes what they read (reflection knows readonly from writable bindings).
+class Commands {
+  public:
+    explicit Commands(Device& device);
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    /// Runs a compute pass. Every binding of the shader must be given once, by its name; `params` must have the size of its
+    /// push-constant block (both are asserted).
+    template <typename Params>
+    void run(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params, Groups groups) {
+        record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, groups, nullptr, 0);
+    }
+    /// The same with the workgroup counts read on the GPU: three uint32 in `arguments` at byte `offset`.
+    template <typename Params>
+    void run_indirect(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params, const Buffer& arguments,
+                      uint64_t offset = 0) {
+        record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, {}, &arguments, offset);
+    }
+    /// Draws `vertices` vertices into `color` (R32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies the
+    /// colour to `target` (width·height uint32).
+    template <typename Params>
+    void draw(const RasterPass& pass, std::initializer_list<Binding> bindings, const Params& params, uint32_t vertices,
+              const Image2D& color, const Image2D& depth, const Buffer& target) {
+        record_draw(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, vertices, color, depth, target);
+    }
+
+    /// Fills `bytes` from `offset` (multiples of 4; ~0ull: to the end) with `value`.
+    void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = ~0ull);
+    void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0, uint64_t to_offset = 0);
+
+    /// Passes between begin and end are timed under "name/" and labelled as one group.
+    void begin_group(const std::string& name);
+    void end_group();
+
+    /// Submits and waits. The recording is then empty again and can be filled anew.
+    void submit();
+
+    /// GPU times of the last submission in order of recording; empty where the device has no timestamps.
+    const std::vector<PassTime>& times() const { return times_; }
+
+    /// Uploads through staging memory; submits at once.
+    template <typename T>
+    void upload(const Buffer& buffer, std::span<const T> data, uint64_t offset = 0) {
+        upload_bytes(buffer, std::as_bytes(data), offset);
+    }
+    /// Downloads `count` elements from byte `offset`; submits at once.
+    template <typename T>
+    std::vector<T> download(const Buffer& buffer, uint64_t count, uint64_t offset = 0) {
+        std::vector<T> result(count);
+        download_bytes(buffer, std::as_writable_bytes(std::span(result)), offset);
+        return result;
+    }
+
+  private:
+    struct Access {
+        bool written = false, read = false;
+    };
+    void begin();
+    void touch(VkBuffer buffer, bool reads, bool writes, bool& hazard);
+    void barrier_if(bool hazard);
+    VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
+    void mark(std::span<const Binding> bindings, const PassBase& pass);
+    void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
+                const Buffer* arguments, uint64_t offset);
+    void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, uint32_t vertices,
+                     const Image2D& color, const Image2D& depth, const Buffer& target);
+    void begin_timer(const std::string& name);
+    void end_timer();
+    void label(const std::string& name);
+    void end_label();
+    void read_times();
+    void upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset);
+    void download_bytes(const Buffer& buffer, std::span<std::byte> data, uint64_t offset);
+    VkDescriptorSet allocate_set(VkDescriptorSetLayout layout);
+
+    Device& device_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkFence fence_ = VK_NULL_HANDLE;
+    bool recording_ = false;
+    std::vector<VkDescriptorPool> set_pools_;
+    size_t set_pool_ = 0;
+    std::vector<VkQueryPool> query_pools_;
+    std::vector<std::string> timed_;
+    std::vector<PassTime> times_;
+    std::string group_;
+    std::unordered_map<VkBuffer, Access> accesses_;
+    Buffer staging_up_, staging_down_;
+};
+
+}  // namespace peelray

@@ -1,0 +1,135 @@
+#define VOLK_IMPLEMENTATION
+#include "gpu/device.h"
+
+#include <map>
+
+#include "base/error.h"
+#include "gpu/instance.h"
+#include "gpu/pass.h"
+#include "gpu/pipeline_cache.h"
+
+namespace peelray {
+
+/// What the device owns and makes on demand.
+struct Device::State {
+    std::unique_ptr<PipelineCache> cache;
+    std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
+    std::map<std::string, std::unique_ptr<RasterPass>> raster_passes;
+};
+
+void check_vulkan(VkResult result, std::string_view what) {
+    if (result == VK_SUCCESS) return;
+    if (result == VK_ERROR_DEVICE_LOST)
+        fail("the Vulkan device was lost while {}: the driver gave up; try a smaller --size or --ldc, or another --device", what);
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+        fail("out of memory while {}: try a smaller --size or --ldc, or another --device", what);
+    fail("Vulkan error {} while {}", int(result), what);
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    static_cast<Device*>(user)->validation_messages_.push_back(data->pMessage);
+    return VK_FALSE;
+}
+
+Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
+    VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+    messenger.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    messenger.pfnUserCallback = on_message;
+    messenger.pUserData = this;
+    instance_ = create_instance(options.validate, &messenger, labels);
+    try {
+        const PhysicalDevice chosen = choose_device(instance_, options.select);
+        physical = chosen.handle;
+        info_ = chosen.info;
+        queue_family = chosen.queue_family;
+        if (options.validate && labels)
+            check_vulkan(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_), "watching the validation layers");
+        create_logical(options.validate);
+    } catch (...) {
+        if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+        vkDestroyInstance(instance_, nullptr);
+        throw;
+    }
+}
+
+void Device::create_logical(bool validate) {
+    vkGetPhysicalDeviceProperties(physical, &properties_);
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
+    uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    timestamp_period_ = families[queue_family].timestampValidBits ? properties_.limits.timestampPeriod : 0;
+
+    const float priority = 1;
+    VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, queue_family, 1, &priority};
+    VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    v13.synchronization2 = v13.dynamicRendering = v13.maintenance4 = VK_TRUE;
+    VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
+    v12.scalarBlockLayout = v12.hostQueryReset = VK_TRUE;
+    VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &v12};
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue_info;
+    check_vulkan(vkCreateDevice(physical, &info, nullptr, &handle), fmt::format("opening the device '{}'", info_.name));
+    volkLoadDeviceTable(&vk, handle);
+    vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);
+    // With validation on, shaders are compiled afresh, so that the layers see every pipeline being made.
+    state_->cache = std::make_unique<PipelineCache>(*this, !validate);
+}
+
+Device::~Device() {
+    vk.vkDeviceWaitIdle(handle);
+    state_.reset();
+    vk.vkDestroyDevice(handle, nullptr);
+    if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    vkDestroyInstance(instance_, nullptr);
+}
+
+const Pass& Device::pass(std::string_view shader, const std::vector<uint32_t>& constants) {
+    auto& entry = state_->passes[{std::string(shader), constants}];
+    if (!entry) entry = std::make_unique<Pass>(*this, state_->cache->handle(), shader, constants);
+    return *entry;
+}
+
+const RasterPass& Device::raster_pass(std::string_view shader) {
+    auto& entry = state_->raster_passes[std::string(shader)];
+    if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader);
+    return *entry;
+}
+
+void Device::check_validation() const {
+    if (!validation_messages_.empty())
+        fail("the Vulkan validation layers complain ({} messages); the first: {}", validation_messages_.size(), validation_messages_.front());
+}
+
+VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
+                                std::string_view what) {
+    int best = -1;
+    for (uint32_t type = 0; type < memory_.memoryTypeCount; type++) {
+        const auto flags = memory_.memoryTypes[type].propertyFlags;
+        if (!(needs.memoryTypeBits >> type & 1) || (flags & wanted) != wanted) continue;
+        if ((flags & nice) == nice) {
+            best = int(type);
+            break;
+        }
+        if (best < 0) best = int(type);
+    }
+    if (best < 0) fail("the device '{}' has no memory of the kind needed for {}", info_.name, what);
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, uint32_t(best)};
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    check_vulkan(vk.vkAllocateMemory(handle, &info, nullptr, &memory),
+                 fmt::format("allocating {:.0f} MiB for {}", double(needs.size) / (1 << 20), what));
+    allocated_ += needs.size;
+    peak_allocated_ = std::max(peak_allocated_, allocated_);
+    return memory;
+}
+
+void Device::release(VkDeviceMemory memory, uint64_t size) {
+    vk.vkFreeMemory(handle, memory, nullptr);
+    allocated_ -= size;
+}
+
+}  // namespace peelray

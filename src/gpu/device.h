@@ -1,0 +1,98 @@
+// The Vulkan device: found by name or number, created without a window system.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace peelray {
+
+class Pass;
+class PipelineCache;
+class RasterPass;
+
+/// One physical device, as `peelray devices` lists it.
+struct DeviceInfo {
+    uint32_t index;           ///< position in this list: what --device takes
+    std::string name, kind;   ///< kind: "discrete", "integrated", "virtual", "CPU" or "other"
+    std::string driver, api_version;
+    uint64_t memory;          ///< bytes of the largest device-local heap
+    bool usable;              ///< offers what Peelray needs
+    std::string lacking;      ///< what is missing, if not usable
+};
+
+/// How a device is opened.
+struct DeviceOptions {
+    std::string select;     ///< index or part of the name (case-insensitive); empty: the first of discrete, integrated, virtual, CPU
+    bool validate = false;  ///< Vulkan validation layers; every message is collected (Device::validation_messages)
+};
+
+/// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
+std::vector<DeviceInfo> list_devices();
+
+/// A logical device with one queue that does graphics, compute and transfer.
+class Device {
+  public:
+    explicit Device(const DeviceOptions& options = {});
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const { return info_; }
+    const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+    const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    /// Nanoseconds per timestamp tick; 0: the queue cannot time.
+    double timestamp_period() const { return timestamp_period_; }
+
+    /// The pass named like its shader file, made once and kept (shaders/NAME.comp). `constants` are the shader's
+    /// specialisation constants 0, 1, …; each combination is a pass of its own.
+    const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
+
+    /// The rasterising pass of NAME.vert and NAME.frag: one R32_UINT target and a D32 depth buffer (greater is nearer).
+    const RasterPass& raster_pass(std::string_view shader);
+
+    /// What the validation layers said so far, one message each; empty without `validate`.
+    const std::vector<std::string>& validation_messages() const { return validation_messages_; }
+    /// Throws Error with the first message if there is any.
+    void check_validation() const;
+
+    /// Device memory held by buffers and images now, and the most so far, in bytes.
+    uint64_t allocated() const { return allocated_; }
+    uint64_t peak_allocated() const { return peak_allocated_; }
+
+    // For the classes of this folder.
+    VkDevice handle = VK_NULL_HANDLE;
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    uint32_t queue_family = 0;
+    VolkDeviceTable vk{};
+    bool labels = false;  ///< VK_EXT_debug_utils is on: passes name themselves
+    VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
+                            std::string_view what);
+    void release(VkDeviceMemory memory, uint64_t size);
+
+  private:
+    struct State;
+    void create_logical(bool validate);
+    static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                                     const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+
+    DeviceInfo info_;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    double timestamp_period_ = 0;
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    std::vector<std::string> validation_messages_;
+    uint64_t allocated_ = 0, peak_allocated_ = 0;
+    std::unique_ptr<State> state_;
+};
+
+/// Throws Error naming `what` unless `result` is VK_SUCCESS.
+void check_vulkan(VkResult result, std::string_view what);
+
+}  // namespace peelray

@@ -1,0 +1,27 @@
+#include "ldc/tracer.h"
+
+#include <cassert>
+
+namespace peelray {
+
+void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles, const RayQueue& queue,
+                  const Buffer& hits, HitTest test, bool any_hit) {
+    assert(cube.sampling == sampling_for(test));
+    const Pass& pass = device.pass("trace", {any_hit, test == HitTest::planar});
+    TraceParams p{};
+    p.grid = cube.grid;
+    p.count = queue.count;
+    p.counted = queue.counters != nullptr;
+    p.counter = queue.counter;
+    p.skips = queue.skip != nullptr;
+    const uint32_t per_dispatch = 64u * std::min(device.limits().maxComputeWorkGroupCount[0], 1u << 24);
+    for (p.first = 0; p.first < queue.count; p.first += per_dispatch)
+        commands.run(pass,
+                     {{"top_table", cube.top_table}, {"node_table", cube.node_table}, {"voxel_table", cube.voxel_table},
+                      {"samples", cube.samples}, {"sample_ids", cube.sample_ids}, {"positions", triangles.positions},
+                      {"triangles", triangles.triangles}, {"rays", queue.rays}, {"skip", queue.skip ? *queue.skip : queue.rays},
+                      {"queue", queue.counters ? *queue.counters : queue.rays}, {"hits", hits}},
+                     p, groups_for(std::min(queue.count - p.first, per_dispatch), 64));
+}
+
+}  // namespace peelray

@@ -1,0 +1,30 @@
+// Tracing queues of rays in a cube.
+#pragma once
+
+#include <optional>
+
+#include "gpu/commands.h"
+#include "ldc/cube.h"
+
+namespace peelray {
+
+enum class HitTest : uint8_t { exact, planar };
+
+/// A queue of rays on the device.
+struct RayQueue {
+    const Buffer& rays;   ///< Ray each
+    const Buffer* skip = nullptr;  ///< a triangle per ray that does not count; null: none
+    uint32_t count;       ///< rays; with `counter`: room in the queue
+    const Buffer* counters = nullptr;  ///< null: `count` rays; else the number is uint32 number `counter` of this buffer
+    uint32_t counter = 0;
+};
+
+/// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the nearest.
+/// The cube must have been sampled for `test` (conservative: exact, centre: planar); asserted.
+void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles, const RayQueue& queue,
+                  const Buffer& hits, HitTest test, bool any_hit);
+
+/// The sampling that a hit test needs.
+inline Sampling sampling_for(HitTest test) { return test == HitTest::exact ? Sampling::conservative : Sampling::centre; }
+
+}  // namespace peelray
