@@ -97,6 +97,132 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 52);
 
+// --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
+
+struct GpuMaterial {
+    vec3 base_color;
+    float metallic;
+    vec3 emissive;
+    float roughness;
+    vec3 absorption;    ///< per world unit inside the volume; 0: none
+    float transmission;
+    float ior;
+    int texture;        ///< base colour, -1: none
+    uint flags;         ///< MATERIAL_*
+    float alpha;
+};
+SHARED_SIZE(GpuMaterial, 64);
+#define MATERIAL_THIN 1u
+#define MATERIAL_UNLIT 2u
+
+struct GpuTexture {
+    uint offset;  ///< first texel in the texel buffer
+    uint width;
+    uint height;
+    uint flags;   ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), bit 4: nearest
+};
+SHARED_SIZE(GpuTexture, 16);
+
+struct GpuLight {
+    vec3 position;
+    uint kind;          ///< 0 directional, 1 point, 2 spot
+    vec3 direction;     ///< unit, the way the light travels
+    float range;        ///< world units
+    vec3 color;
+    float cone_scale;   ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
+    float cone_offset;
+};
+SHARED_SIZE(GpuLight, 52);
+
+/// Everything of a frame that does not change from pass to pass.
+struct Frame {
+    CubeGrid grid;
+    // Camera: ray through the pixel position p: forward + right * (2 p.x/width - 1) + up * (1 - 2 p.y/height).
+    vec3 eye;
+    float near;          ///< depth 1 of the reversed depth buffer
+    vec3 right;          ///< times tan(half the horizontal field of view); orthographic: times half the width
+    uint orthographic;
+    vec3 up;
+    float far;           ///< orthographic only
+    vec3 forward;        ///< unit
+    uint width;
+    uint height;
+    uint row_pixels;     ///< width rounded up to 8: records of one row of 8x8 tiles / 8
+    uint triangles;
+    uint lights;
+    // Environment.
+    uvec2 env_size;
+    uint env_levels;
+    float sun_cosine;    ///< of the sun's angular radius; 2: no sun disc
+    vec3 sun_direction;  ///< to the sun
+    uint has_colors;
+    vec3 sun_radiance;
+    uint effects;        ///< EFFECT_*
+    vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
+    float surface_offset;  ///< along the normal, in world units, before a secondary ray starts (planar hits)
+    uint spp;
+    uint last_level;     ///< level whose hits spawn no more rays
+    uint planar;
+};
+SHARED_SIZE(Frame, 284);
+#define EFFECT_REFLECTION 1u
+#define EFFECT_REFRACTION 2u
+#define EFFECT_SHADOW 4u
+#define EFFECT_AMBIENT 8u
+
+/// What a ray carries beside its geometry.
+struct RayState {
+    vec3 weight;  ///< share of the pixel's light that comes along this ray
+    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_SEES_SUN
+};
+SHARED_SIZE(RayState, 16);
+#define MEDIUM_NONE 0x7fffffffu
+#define RAY_SEES_SUN 0x80000000u
+
+/// One hit of the tree of rays below a pixel: its radiance is its own plus that of its children, weighted.
+struct PathNode {
+    vec3 radiance;
+    uint child0;
+    vec3 weight0;
+    uint child1;
+    vec3 weight1;
+};
+SHARED_SIZE(PathNode, 44);
+#define NO_CHILD 0xffffffffu
+
+/// Counters of a band: queue lengths by level, then rays by kind.
+#define QUEUE_LEVELS 17u
+#define QUEUE_REFLECTION 17u
+#define QUEUE_REFRACTION 18u
+#define QUEUE_SHADOW 19u
+#define QUEUE_AMBIENT 20u
+#define QUEUE_OVERFLOW 21u
+#define QUEUE_COUNTERS 22u
+
+struct VisibilityParams {
+    vec2 jitter;  ///< sample position in the pixel, [0, 1)
+};
+SHARED_SIZE(VisibilityParams, 8);
+
+/// Parameters of the passes that work on one level of the tree of rays.
+struct LevelParams {
+    uint level;
+    uint capacity;       ///< room in this level's queue
+    uint next_capacity;  ///< room in the next level's queue
+    uint sample_index;
+    vec2 jitter;
+    uint first_row;      ///< of the band, a multiple of 8
+    uint rows;           ///< of the band
+};
+SHARED_SIZE(LevelParams, 32);
+
+struct TonemapParams {
+    uint pixels;
+    float scale;   ///< exposure / samples
+    uint curve;    ///< 0 none, 1 ACES, 2 neutral
+};
+SHARED_SIZE(TonemapParams, 12);
+
 #ifdef __cplusplus
 }  // namespace peelray
 #endif

@@ -287,12 +287,15 @@ void Commands::end_timer() {
 
 void Commands::read_times() {
     times_.clear();
+    elapsed_ms_ = 0;
+    uint64_t first = 0, ticks[2] = {};
     for (size_t i = 0; i < timed_.size(); i++) {
-        uint64_t ticks[2] = {};
         check_vulkan(device_.vk.vkGetQueryPoolResults(device_.handle, query_pools_[i / kTimersPerPool], uint32_t(2 * (i % kTimersPerPool)), 2,
                                                       sizeof ticks, ticks, 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                      "reading timestamps");
         times_.push_back({timed_[i], double(ticks[1] - ticks[0]) * device_.timestamp_period() * 1e-6});
+        if (i == 0) first = ticks[0];
+        elapsed_ms_ = double(ticks[1] - first) * device_.timestamp_period() * 1e-6;
     }
 }
 

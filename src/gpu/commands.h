@@ -75,6 +75,9 @@ class Commands {
     /// GPU times of the last submission in order of recording; empty where the device has no timestamps.
     const std::vector<PassTime>& times() const { return times_; }
 
+    /// From the first pass's start to the last one's end of the last submission, in GPU milliseconds; 0 without timestamps.
+    double elapsed_ms() const { return elapsed_ms_; }
+
     /// Uploads through staging memory; submits at once.
     template <typename T>
     void upload(const Buffer& buffer, std::span<const T> data, uint64_t offset = 0) {
@@ -120,6 +123,7 @@ class Commands {
     std::vector<VkQueryPool> query_pools_;
     std::vector<std::string> timed_;
     std::vector<PassTime> times_;
+    double elapsed_ms_ = 0;
     std::string group_;
     std::unordered_map<VkBuffer, Access> accesses_;
     Buffer staging_up_, staging_down_;

@@ -14,14 +14,18 @@ void record_trace(Commands& commands, Device& device, const Cube& cube, const Tr
     p.counted = queue.counters != nullptr;
     p.counter = queue.counter;
     p.skips = queue.skip != nullptr;
+    const std::initializer_list<Binding> bindings = {
+        {"top_table", cube.top_table}, {"node_table", cube.node_table}, {"voxel_table", cube.voxel_table},
+        {"samples", cube.samples}, {"sample_ids", cube.sample_ids}, {"positions", triangles.positions},
+        {"triangles", triangles.triangles}, {"rays", queue.rays}, {"skip", queue.skip ? *queue.skip : queue.rays},
+        {"queue", queue.counters ? *queue.counters : queue.rays}, {"hits", hits}};
+    if (queue.groups) {
+        commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
+        return;
+    }
     const uint32_t per_dispatch = 64u * std::min(device.limits().maxComputeWorkGroupCount[0], 1u << 24);
     for (p.first = 0; p.first < queue.count; p.first += per_dispatch)
-        commands.run(pass,
-                     {{"top_table", cube.top_table}, {"node_table", cube.node_table}, {"voxel_table", cube.voxel_table},
-                      {"samples", cube.samples}, {"sample_ids", cube.sample_ids}, {"positions", triangles.positions},
-                      {"triangles", triangles.triangles}, {"rays", queue.rays}, {"skip", queue.skip ? *queue.skip : queue.rays},
-                      {"queue", queue.counters ? *queue.counters : queue.rays}, {"hits", hits}},
-                     p, groups_for(std::min(queue.count - p.first, per_dispatch), 64));
+        commands.run(pass, bindings, p, groups_for(std::min(queue.count - p.first, per_dispatch), 64));
 }
 
 }  // namespace peelray

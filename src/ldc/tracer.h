@@ -17,6 +17,8 @@ struct RayQueue {
     uint32_t count;       ///< rays; with `counter`: room in the queue
     const Buffer* counters = nullptr;  ///< null: `count` rays; else the number is uint32 number `counter` of this buffer
     uint32_t counter = 0;
+    const Buffer* groups = nullptr;  ///< null: dispatched for `count`; else workgroups of 64 rays are read at groups_offset
+    uint64_t groups_offset = 0;
 };
 
 /// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the nearest.

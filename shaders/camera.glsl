@@ -1,0 +1,16 @@
+// The camera's rays and the order of a band's pixels: 8x8 tiles, row by row, so that neighbours in the queue are neighbours
+// in the picture.
+
+/// Pixel of record `index` of a band; it may lie outside the picture.
+uvec2 recordPixel(uint index, uint first_row) {
+    const uint tile = index >> 6u, lane = index & 63u, tiles = frame[0].row_pixels >> 3u;
+    return uvec2((tile % tiles) * 8u + (lane & 7u), first_row + (tile / tiles) * 8u + (lane >> 3u));
+}
+
+Ray cameraRay(vec2 pixel) {
+    const vec2 p = vec2(2.0 * pixel.x / float(frame[0].width) - 1.0, 1.0 - 2.0 * pixel.y / float(frame[0].height));
+    const vec3 offset = frame[0].right * p.x + frame[0].up * p.y;
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    if (frame[0].orthographic != 0u) return Ray(frame[0].eye + offset, 0.0, frame[0].forward, infinity);
+    return Ray(frame[0].eye, 0.0, normalize(frame[0].forward + offset), infinity);
+}

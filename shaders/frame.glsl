@@ -1,0 +1,147 @@
+// Access to the scene during a frame: materials, textures, environment, and the surface at a hit.
+// Include after the buffers it reads: frame, materials, texture_infos, texels, normals, uvs, colors, triangle_materials,
+// positions, triangles, environment. Directions point away from the surface.
+#ifndef PEELRAY_FRAME_GLSL
+#define PEELRAY_FRAME_GLSL
+
+#include "shading.glsl"
+
+/// What shading needs to know of a hit.
+struct Surface {
+    vec3 position;
+    vec3 geometric;    ///< unit normal of the triangle, on the ray's side
+    vec3 normal;       ///< interpolated, unit, on the ray's side
+    vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
+    vec3 base_color;
+    float error;       ///< bound on the position's rounding error, world units
+    bool front;        ///< the ray comes from the side that the normals point to
+    uint material;
+};
+
+/// Where a shadow ray starts on a coarse smooth mesh: on the surface that the interpolated normals describe, so that its facets
+/// do not shadow each other (Hanika: Hacking the Shadow Terminator, Ray Tracing Gems II, ch. 4).
+vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 weights) {
+    const vec3 pa = (p - a) - min(0.0, dot(p - a, na)) * na;
+    const vec3 pb = (p - b) - min(0.0, dot(p - b, nb)) * nb;
+    const vec3 pc = (p - c) - min(0.0, dot(p - c, nc)) * nc;
+    return (a + pa) * weights.x + (b + pb) * weights.y + (c + pc) * weights.z;
+}
+
+uint wrapTexel(int i, uint size, uint mode) {
+    const int n = int(size);
+    if (mode == 2u) return uint(clamp(i, 0, n - 1));
+    if (mode == 0u) return uint(((i % n) + n) % n);
+    const int m = ((i % (2 * n)) + 2 * n) % (2 * n);
+    return uint(m < n ? m : 2 * n - 1 - m);
+}
+
+vec4 fetchTexel(GpuTexture info, int x, int y) {
+    const uint at = info.offset + wrapTexel(y, info.height, info.flags >> 2u & 3u) * info.width + wrapTexel(x, info.width, info.flags & 3u);
+    const vec4 encoded = unpackUnorm4x8(texels[at]);
+    return vec4(srgbToLinear(encoded.rgb), encoded.a);
+}
+
+vec4 sampleTexture(int index, vec2 uv) {
+    const GpuTexture info = texture_infos[index];
+    // Whole repeats are dropped first: large coordinates would lose the fraction's bits.
+    const vec2 wrapped = uv - 2.0 * floor(uv * 0.5);
+    const bool clamped_u = (info.flags & 3u) == 2u, clamped_v = (info.flags >> 2u & 3u) == 2u;
+    const vec2 p = vec2(clamped_u ? clamp(uv.x, 0.0, 1.0) : wrapped.x, clamped_v ? clamp(uv.y, 0.0, 1.0) : wrapped.y) * vec2(info.width, info.height);
+    if ((info.flags & 16u) != 0u) return fetchTexel(info, int(floor(p.x)), int(floor(p.y)));
+    const vec2 q = p - 0.5, f = fract(q);
+    const ivec2 i = ivec2(floor(q));
+    const vec4 top = mix(fetchTexel(info, i.x, i.y), fetchTexel(info, i.x + 1, i.y), f.x);
+    const vec4 bottom = mix(fetchTexel(info, i.x, i.y + 1), fetchTexel(info, i.x + 1, i.y + 1), f.x);
+    return mix(top, bottom, f.y);
+}
+
+Surface surfaceAt(uint triangle, vec2 uv, vec3 direction) {
+    Surface s;
+    const uvec3 corners = triangles[triangle];
+    const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
+    const vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    uv = clamp(uv, vec2(0), vec2(1));  // planar hits may lie beside their triangle
+    const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
+    s.position = a * weights.x + b * weights.y + c * weights.z;
+    const vec3 largest = max(abs(a), max(abs(b), abs(c)));
+    s.error = max(largest.x, max(largest.y, largest.z)) * 1e-6;
+    const vec3 cross_product = cross(b - a, c - a);
+    const float size = length(cross_product);
+    vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;
+    normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0, 1, 0);
+    s.geometric = size > 0.0 ? cross_product / size : normal;
+    s.front = dot(s.geometric, direction) < 0.0;
+    if (!s.front) s.geometric = -s.geometric;
+    // The interpolated normal may disagree with the winding in careless files: it follows the triangle.
+    const float side = dot(normal, s.geometric) < 0.0 ? -1.0 : 1.0;
+    s.normal = visibleNormal(normal * side, s.geometric, -direction);
+    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, weights);
+    s.material = triangle_materials[triangle];
+    s.base_color = materials[s.material].base_color;
+    if (frame[0].has_colors != 0u)
+        s.base_color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
+    const int texture_index = materials[s.material].texture;
+    if (texture_index >= 0)
+        s.base_color *= sampleTexture(texture_index, uvs[corners.x] * weights.x + uvs[corners.y] * weights.y + uvs[corners.z] * weights.z).rgb;
+    return s;
+}
+
+vec3 environmentTexel(uint level_offset, uvec2 size, int x, int y) {
+    const uint column = uint((x + int(size.x)) % int(size.x)), row = uint(clamp(y, 0, int(size.y) - 1));
+    return environment[level_offset + row * size.x + column].rgb;
+}
+
+vec3 environmentLevel(vec2 uv, uint level) {
+    uint offset = 0u;
+    uvec2 size = frame[0].env_size;
+    for (uint i = 0u; i < level; i++) {
+        offset += size.x * size.y;
+        size = max(size / 2u, uvec2(1));
+    }
+    const vec2 p = uv * vec2(size) - 0.5, f = fract(p);
+    const ivec2 i = ivec2(floor(p));
+    const vec3 top = mix(environmentTexel(offset, size, i.x, i.y), environmentTexel(offset, size, i.x + 1, i.y), f.x);
+    const vec3 bottom = mix(environmentTexel(offset, size, i.x, i.y + 1), environmentTexel(offset, size, i.x + 1, i.y + 1), f.x);
+    return mix(top, bottom, f.y);
+}
+
+/// Radiance of the environment along a unit direction, without the sun's disc; `blur` in [0, 1]: roughness.
+vec3 environmentRadiance(vec3 d, float blur) {
+    const vec2 uv = vec2(0.5 + atan(d.x, -d.z) * (0.5 / PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
+    const float level = blur * float(frame[0].env_levels - 1u);
+    const uint lower = uint(level);
+    const vec3 sharp = environmentLevel(uv, lower);
+    const float part = level - float(lower);
+    return part > 0.0 ? mix(sharp, environmentLevel(uv, min(lower + 1u, frame[0].env_levels - 1u)), part) : sharp;
+}
+
+vec3 skyRadiance(vec3 d, bool sees_sun) {
+    vec3 radiance = environmentRadiance(d, 0.0);
+    if (sees_sun && dot(d, frame[0].sun_direction) >= frame[0].sun_cosine) radiance += frame[0].sun_radiance;
+    return radiance;
+}
+
+/// Irradiance of the environment on a surface with this normal, from spherical harmonics.
+vec3 environmentIrradiance(vec3 n) {
+    vec3 sum = frame[0].irradiance[0];
+    sum += frame[0].irradiance[1] * n.y + frame[0].irradiance[2] * n.z + frame[0].irradiance[3] * n.x;
+    sum += frame[0].irradiance[4] * (n.x * n.y) + frame[0].irradiance[5] * (n.y * n.z) + frame[0].irradiance[6] * (3.0 * n.z * n.z - 1.0) +
+           frame[0].irradiance[7] * (n.x * n.z) + frame[0].irradiance[8] * (n.x * n.x - n.y * n.y);
+    return max(sum, vec3(0));
+}
+
+/// Light left after a ray of this RayState::medium went the distance `t` (Beer and Lambert).
+vec3 transmittance(uint medium, float t) {
+    medium &= ~RAY_SEES_SUN;
+    return medium == MEDIUM_NONE ? vec3(1) : exp(-materials[medium].absorption * t);
+}
+
+/// The start of a ray that leaves the surface to the side that `side` points to: off the triangle's plane by the position's
+/// error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6), planar hits
+/// by the voxel-sized error of their samples.
+vec3 offsetStart(Surface s, vec3 start, vec3 side) {
+    const float distance = s.error + frame[0].surface_offset;
+    return start + s.geometric * (dot(side, s.geometric) >= 0.0 ? distance : -distance);
+}
+
+#endif

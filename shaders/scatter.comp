@@ -1,0 +1,174 @@
+// What a hit reflects, lets through and emits by itself: starts the next level's rays and the tree's node. Misses see the
+// environment.
+#version 460
+#include "common.glsl"
+#include "params.h"
+layout(local_size_x = 64) in;
+PARAMS(LevelParams)
+#define SCENE_FIRST_BINDING 0
+#define SCENE_WITH_TRIANGLES
+#include "scene_buffers.glsl"
+BUFFER(readonly, 11, Ray, rays)
+BUFFER(readonly, 12, RayState, states)
+BUFFER(readonly, 13, Hit, hits)
+BUFFER(writeonly, 14, PathNode, nodes)
+BUFFER(, 15, uint, queue)
+BUFFER(writeonly, 16, Ray, next_rays)
+BUFFER(writeonly, 17, RayState, next_states)
+BUFFER(writeonly, 18, uint, next_skip)
+#include "frame.glsl"
+
+/// Branches that carry less than this share of the pixel are not traced: they see the environment.
+const float LEAST_WEIGHT = 1.0 / 512.0;
+
+struct Branch {
+    vec3 weight;      ///< 0: none
+    vec3 direction;
+    uint medium;      ///< of the new ray, with RAY_SEES_SUN
+    bool traced;
+    float blur;       ///< roughness for the environment, if not traced
+};
+const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0);
+
+shared uint group_counts[2];   // reflection, refraction rays of the workgroup
+shared uint group_first;
+
+/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
+vec3 microfacet(Surface s, vec3 view, float alpha, uint record) {
+    if (frame[0].spp <= 1u || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
+    vec3 t, b;
+    tangents(s.normal, t, b);
+    const vec3 local = vec3(dot(view, t), dot(view, b), max(1e-4, dot(view, s.normal)));
+    const vec2 random = randomPair(uvec2(record, params.first_row), params.sample_index, 1u + params.level);
+    const vec3 h = sampleGgx(normalize(local), alpha, random);
+    return normalize(t * h.x + b * h.y + s.normal * h.z);
+}
+
+/// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
+float tracedPart(GpuMaterial m) {
+    if (frame[0].spp > 1u) return m.roughness < 0.6 || m.metallic > 0.5 ? 1.0 : 0.0;
+    return 1.0 - smoothstep(0.2, 0.5, m.roughness);
+}
+
+void decide(inout Branch branch, vec3 path_weight, uint effect) {
+    branch.traced = (frame[0].effects & effect) != 0u && params.level < frame[0].last_level &&
+                    largest(branch.weight * path_weight) >= LEAST_WEIGHT;
+}
+
+/// Both branches of a surface, and what it sends by itself.
+vec3 scatterSurface(Surface s, vec3 incoming, RayState state, uint record, out Branch reflection, out Branch refraction) {
+    reflection = refraction = NO_BRANCH;
+    const GpuMaterial m = materials[s.material];
+    if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
+    const vec3 view = -incoming;
+    const bool thin = (m.flags & MATERIAL_THIN) != 0u;
+    const bool transmits = m.transmission > 0.0 && m.metallic < 1.0;
+    // Volumes are left where the ray meets their back; opaque and thin surfaces are the same from both sides.
+    const bool leaving = transmits && !thin && !s.front;
+    const float eta = thin || !transmits ? m.ior : (leaving ? 1.0 / m.ior : m.ior);
+    const float alpha = m.roughness * m.roughness;
+    const vec3 h = microfacet(s, view, alpha, record);
+    const float cosine = clamp(dot(view, h), 0.0, 1.0);
+    float dielectric = fresnelDielectric(cosine, eta);
+    if (transmits && thin) dielectric = 2.0 * dielectric / (1.0 + dielectric);  // both faces of the wall
+    const vec3 metal = fresnelSchlick(s.base_color, cosine);
+    const vec3 fresnel = mix(vec3(dielectric), metal, m.metallic);
+    const bool mirror = m.roughness < MIRROR_ROUGHNESS;
+    const uint sun = mirror ? RAY_SEES_SUN : 0u;
+    const uint medium = state.medium & ~RAY_SEES_SUN;
+
+    vec3 reflected = reflect(incoming, h);
+    vec3 weight = fresnel;
+    if (frame[0].spp > 1u && !mirror)
+        weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
+    else if (!mirror && !transmits)
+        weight = environmentBrdf(mix(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), s.base_color, m.metallic), m.roughness, cosine);
+    reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0);
+    decide(reflection, state.weight, EFFECT_REFLECTION);
+
+    vec3 radiance = m.emissive;
+    const float part = transmits ? 1.0 : tracedPart(m);
+    if (part < 1.0) {  // the untraced part of a wide lobe, at once
+        radiance += reflection.weight * (1.0 - part) * environmentRadiance(reflection.direction, m.roughness);
+        reflection.weight *= part;
+        reflection.traced = reflection.traced && part > 0.0;
+    }
+    reflection.blur = frame[0].spp > 1u ? 0.0 : m.roughness;
+
+    if (transmits) {
+        vec3 direction;
+        bool passes = true;
+        if (thin)
+            direction = incoming;
+        else
+            passes = refractRay(incoming, h, eta, direction);
+        if (passes) {
+            const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
+            const uint inside = thin ? medium : (leaving ? MEDIUM_NONE : s.material);
+            refraction = Branch(through, direction, inside | sun, false, 0.0);
+            decide(refraction, state.weight, EFFECT_REFRACTION);
+        }
+    }
+    return radiance;
+}
+
+void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weight) {
+    if (index >= params.next_capacity) return;
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    next_rays[index] = Ray(offsetStart(s, s.position, branch.direction), 0.0, branch.direction, infinity);
+    next_states[index] = RayState(path_weight * branch.weight, branch.medium);
+    next_skip[index] = triangle;
+}
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationIndex;
+    if (lane < 2u) group_counts[lane] = 0u;
+    barrier();
+    const bool valid = i < min(params.capacity, queue[params.level]);
+    PathNode node = PathNode(vec3(0), NO_CHILD, vec3(0), NO_CHILD, vec3(0));
+    Branch reflection = NO_BRANCH, refraction = NO_BRANCH;
+    Surface s;
+    uint triangle = 0xffffffffu, slot0 = 0u, slot1 = 0u;
+    vec3 path_weight = vec3(0);
+    if (valid) {
+        const Ray ray = rays[i];
+        RayState state = states[i];
+        const Hit hit = hits[i];
+        triangle = hit.triangle;
+        if (triangle == 0xffffffffu) {
+            node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+        } else {
+            s = surfaceAt(triangle, vec2(hit.u, hit.v), ray.direction);
+            const vec3 lost = transmittance(state.medium, hit.t);
+            state.weight *= lost;
+            path_weight = state.weight;
+            node.radiance = scatterSurface(s, ray.direction, state, i, reflection, refraction);
+            // What is not traced sees the environment.
+            if (!reflection.traced) node.radiance += reflection.weight * environmentRadiance(reflection.direction, reflection.blur);
+            if (!refraction.traced) node.radiance += refraction.weight * environmentRadiance(refraction.direction, 0.0);
+            node.radiance *= lost;
+            node.weight0 = reflection.weight * lost;
+            node.weight1 = refraction.weight * lost;
+        }
+        if (reflection.traced) slot0 = atomicAdd(group_counts[0], 1u);
+        if (refraction.traced) slot1 = atomicAdd(group_counts[1], 1u);
+    }
+    barrier();
+    if (lane == 0u && group_counts[0] + group_counts[1] > 0u) {
+        group_first = atomicAdd(queue[params.level + 1u], group_counts[0] + group_counts[1]);
+        if (group_counts[0] > 0u) atomicAdd(queue[QUEUE_REFLECTION], group_counts[0]);
+        if (group_counts[1] > 0u) atomicAdd(queue[QUEUE_REFRACTION], group_counts[1]);
+        if (group_first + group_counts[0] + group_counts[1] > params.next_capacity) queue[QUEUE_OVERFLOW] = 1u;
+    }
+    barrier();
+    if (!valid) return;
+    if (reflection.traced) {
+        node.child0 = group_first + slot0;
+        emitRay(node.child0, reflection, s, triangle, path_weight);
+    }
+    if (refraction.traced) {
+        node.child1 = group_first + group_counts[0] + slot1;
+        emitRay(node.child1, refraction, s, triangle, path_weight);
+    }
+    nodes[i] = node;
+}

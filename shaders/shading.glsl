@@ -1,0 +1,130 @@
+// Shading without bindings: Fresnel, microfacets, colour. Directions point away from the surface, all unit.
+#ifndef PEELRAY_SHADING_GLSL
+#define PEELRAY_SHADING_GLSL
+
+const float PI = 3.14159265358979;
+
+/// Below this perceptual roughness a surface is a mirror: punctual lights leave no highlight, rays see the sun's disc.
+const float MIRROR_ROUGHNESS = 0.05;
+
+vec3 srgbToLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
+vec3 linearToSrgb(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
+float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
+float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
+
+/// Unpolarised Fresnel reflectance of a dielectric; `cosine` ≥ 0 on the incoming side, `eta` = index behind / index before.
+/// 1 at total internal reflection.
+float fresnelDielectric(float cosine, float eta) {
+    const float sine2 = (1.0 - cosine * cosine) / (eta * eta);
+    if (sine2 >= 1.0) return 1.0;
+    const float refracted = sqrt(1.0 - sine2);
+    const float parallel = (eta * cosine - refracted) / (eta * cosine + refracted);
+    const float perpendicular = (cosine - eta * refracted) / (cosine + eta * refracted);
+    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+}
+
+vec3 fresnelSchlick(vec3 f0, float cosine) {
+    const float m = clamp(1.0 - cosine, 0.0, 1.0), m2 = m * m;
+    return f0 + (1.0 - f0) * (m2 * m2 * m);
+}
+
+/// The refracted direction of `incoming` (towards the surface); false: total internal reflection.
+bool refractRay(vec3 incoming, vec3 normal, float eta, out vec3 refracted) {
+    const float cosine = -dot(incoming, normal);
+    const float k = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+    refracted = vec3(0);
+    if (k < 0.0) return false;
+    refracted = normalize(incoming / eta + normal * (cosine / eta - sqrt(k)));
+    return true;
+}
+
+/// An interpolated normal that the viewer would see from behind is bent until it is just visible.
+vec3 visibleNormal(vec3 normal, vec3 geometric, vec3 to_viewer) {
+    const float cosine = dot(normal, to_viewer);
+    if (cosine >= 1e-3) return normal;
+    const vec3 bent = normal + to_viewer * (1e-3 - cosine);
+    return dot(bent, bent) > 1e-12 ? normalize(bent) : geometric;
+}
+
+/// A reflected direction that would enter the surface is lifted to just above it.
+vec3 aboveSurface(vec3 direction, vec3 geometric) {
+    const float height = dot(direction, geometric);
+    return height >= 1e-3 ? direction : normalize(direction + geometric * (1e-3 - height));
+}
+
+/// Split-sum factors of a GGX surface under white light: colour = f0 * x + y (Karis: Physically Based Shading on Mobile, 2014).
+vec3 environmentBrdf(vec3 f0, float roughness, float cosine) {
+    const vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    const float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
+    const vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
+    return f0 * ab.x + ab.y;
+}
+
+float ggxDistribution(float n_h, float alpha) {
+    const float a2 = alpha * alpha, k = n_h * n_h * (a2 - 1.0) + 1.0;
+    return a2 / (PI * k * k);
+}
+
+/// Smith's masking of one direction, GGX.
+float ggxMasking(float cosine, float alpha) {
+    const float a2 = alpha * alpha;
+    return 2.0 * cosine / (cosine + sqrt(a2 + (1.0 - a2) * cosine * cosine));
+}
+
+/// A visible normal of the GGX distribution (Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 2018).
+/// `view` in the frame whose z is the normal; `random` in [0, 1).
+vec3 sampleGgx(vec3 view, float alpha, vec2 random) {
+    const vec3 v = normalize(vec3(alpha * view.xy, view.z));
+    const float length2 = v.x * v.x + v.y * v.y;
+    const vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0) / sqrt(length2) : vec3(1, 0, 0);
+    const vec3 t2 = cross(v, t1);
+    const float r = sqrt(random.x), phi = 2.0 * PI * random.y, s = 0.5 * (1.0 + v.z);
+    const float p1 = r * cos(phi), p2 = mix(sqrt(max(0.0, 1.0 - p1 * p1)), r * sin(phi), s);
+    const vec3 n = p1 * t1 + p2 * t2 + sqrt(max(0.0, 1.0 - p1 * p1 - p2 * p2)) * v;
+    return normalize(vec3(alpha * n.xy, max(1e-6, n.z)));
+}
+
+/// Tangents of a unit normal (Duff et al.: Building an Orthonormal Basis, Revisited, JCGT 2017).
+void tangents(vec3 n, out vec3 t, out vec3 b) {
+    const float s = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + n.z), c = n.x * n.y * a;
+    t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
+    b = vec3(c, s + n.y * n.y * a, -n.y);
+}
+
+/// pcg3d (Jarzynski, Olano: Hash Functions for GPU Rendering, JCGT 2020).
+uvec3 hash3(uvec3 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+/// Sample `index` of pixel `pixel` at depth `dimension`: the R2 sequence, shifted by a hash per pixel and dimension.
+vec2 randomPair(uvec2 pixel, uint index, uint dimension) {
+    const uvec3 h = hash3(uvec3(pixel, dimension));
+    const uvec2 step = uvec2(3242174889u, 2447445414u);  // 2^32 / g, 2^32 / g^2, g the plastic number
+    return vec2((h.xy + step * index) >> 8u) * (1.0 / 16777216.0);
+}
+
+/// Tone curves; input exposed, linear; output linear in [0, 1].
+vec3 tonemapAces(vec3 c) {  // Narkowicz: ACES filmic tone mapping curve, 2015
+    return clamp((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14), vec3(0), vec3(1));
+}
+vec3 tonemapNeutral(vec3 c) {  // Khronos PBR neutral tone mapper, 2024
+    const float x = min(c.r, min(c.g, c.b));
+    const float offset = x < 0.08 ? x - 6.25 * x * x : 0.04;
+    c -= offset;
+    const float peak = largest(c), start = 0.8 - 0.04;
+    if (peak < start) return c;
+    const float d = 1.0 - start, compressed = 1.0 - d * d / (peak + d - start);
+    c *= compressed / peak;
+    const float g = 1.0 - 1.0 / (0.15 * (peak - compressed) + 1.0);
+    return mix(c, vec3(compressed), g);
+}
+
+#endif

@@ -1,0 +1,79 @@
+// `peelray info` and `peelray devices`.
+#include "base/error.h"
+#include "cli/program.h"
+#include "gpu/device.h"
+#include "scene/scene.h"
+
+namespace peelray {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
+std::string named(const std::string& name) { return name.empty() ? "(no name)" : name; }
+
+std::string describe(const Material& m) {
+    std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x, m.base_color.y,
+                                   m.base_color.z, m.metallic, m.roughness);
+    if (m.base_color_texture >= 0) text += fmt::format(", texture {}", m.base_color_texture);
+    if (m.emissive != glm::vec3(0)) text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);
+    if (m.transmission > 0)
+        text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior, m.thickness > 0 ? "volume" : "thin wall");
+    if (m.unlit) text += ", unlit";
+    return text;
+}
+
+const char* kind_of(const Light& light) {
+    const char* kinds[] = {"directional", "point", "spot"};
+    return kinds[int(light.kind)];
+}
+
+}  // namespace
+
+void run_info(const std::string& name) {
+    const Scene scene = load_scene(name);
+    const Geometry geometry = flatten(scene);
+    size_t primitives = 0;
+    for (const Mesh& mesh : scene.meshes) primitives += mesh.primitives.size();
+    fmt::print("scene       {}\n", scene.name);
+    fmt::print("triangles   {} ({} without area)\n", geometry.triangles.size(), geometry.zero_area);
+    fmt::print("vertices    {}\n", geometry.positions.size());
+    fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y, geometry.lower.z,
+               geometry.upper.x, geometry.upper.y, geometry.upper.z);
+    fmt::print("nodes       {}\n", scene.nodes.size());
+    fmt::print("meshes      {} ({} primitives)\n", scene.meshes.size(), primitives);
+    for (const Mesh& mesh : scene.meshes) {
+        size_t count = 0;
+        for (const Primitive& primitive : mesh.primitives) count += primitive.triangles.size();
+        fmt::print("  {}: {} triangles\n", named(mesh.name), count);
+    }
+    fmt::print("materials   {}\n", scene.materials.size());
+    for (const Material& material : scene.materials) fmt::print("  {}: {}\n", named(material.name), describe(material));
+    fmt::print("textures    {}\n", scene.textures.size());
+    for (const Texture& texture : scene.textures) fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
+    fmt::print("cameras     {}\n", scene.cameras.size());
+    for (const Camera& camera : scene.cameras)
+        fmt::print("  {}: eye {:.4g} {:.4g} {:.4g}, {}\n", named(camera.name), camera.eye.x, camera.eye.y, camera.eye.z,
+                   camera.orthographic_height > 0 ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
+                                                  : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f));
+    fmt::print("lights      {}\n", scene.lights.size());
+    for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
+    fmt::print("animations  {}\n", scene.animations.size());
+    for (const Animation& animation : scene.animations) fmt::print("  {}: {:.3g} s\n", named(animation.name), animation.duration);
+    fmt::print("extensions used           {}\n", joined(scene.extensions_used));
+    fmt::print("extensions without effect {}\n", joined(scene.extensions_unsupported));
+    for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
+}
+
+void run_devices() {
+    for (const DeviceInfo& device : list_devices()) {
+        fmt::print("{}: {}\n", device.index, device.name);
+        fmt::print("   {}, Vulkan {}, driver {}, {:.1f} GiB{}\n", device.kind, device.api_version, device.driver,
+                   double(device.memory) / (1ull << 30), device.usable ? "" : fmt::format("; not usable: lacks {}", device.lacking));
+    }
+}
+
+}  // namespace peelray

@@ -1,0 +1,280 @@
+// `peelray render`.
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "cli/program.h"
+#include "cli/stats.h"
+#include "image/image.h"
+
+namespace peelray {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kAovs = {"depth", "normal", "albedo", "position", "triangle", "material"};
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> parts;
+    for (size_t begin = 0; begin <= list.size();) {
+        const size_t end = std::min(list.find(',', begin), list.size());
+        if (end > begin) parts.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+void parse_effects(const std::string& list, RenderSettings& settings) {
+    settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
+    const auto names = split(list);
+    if (names.empty()) fail("--effects names nothing: choose any of reflection,refraction,shadow,ambient, or none");
+    for (const std::string& name : names) {
+        if (name == "reflection")
+            settings.reflection = true;
+        else if (name == "refraction")
+            settings.refraction = true;
+        else if (name == "shadow")
+            settings.shadow = true;
+        else if (name == "ambient")
+            settings.ambient = true;
+        else if (name != "none")
+            fail("there is no effect '{}': choose any of reflection,refraction,shadow,ambient, or none (--effects)", name);
+    }
+}
+
+std::vector<std::string> parse_aovs(const std::string& list) {
+    if (list == "all") return kAovs;
+    const auto names = split(list);
+    for (const std::string& name : names)
+        if (std::find(kAovs.begin(), kAovs.end(), name) == kAovs.end())
+            fail("there is no auxiliary picture '{}': choose from depth,normal,albedo,position,triangle,material, or all (--aov)", name);
+    return names;
+}
+
+glm::vec3 parse_color(const std::string& text) {
+    glm::vec3 color;
+    const char* at = text.data();
+    const char* end = at + text.size();
+    for (int i = 0; i < 3; i++) {
+        const auto parsed = std::from_chars(at, end, color[i]);
+        const bool separated = i == 2 ? parsed.ptr == end : parsed.ptr < end && *parsed.ptr == ',';
+        if (parsed.ec != std::errc() || !separated || !std::isfinite(color[i]) || color[i] < 0)
+            fail("'{}' is no colour: write three numbers from 0 up, such as 0.5,0.6,0.7 (--background)", text);
+        at = parsed.ptr + 1;
+    }
+    return color;
+}
+
+Environment choose_environment(const RenderArguments& a, const Scene& scene) {
+    const int chosen = int(!a.env.empty()) + int(a.sky) + int(!a.background.empty());
+    if (chosen > 1) fail("--env, --sky and --background exclude each other: give one");
+    if (!a.env.empty()) {
+        const Image image = read_hdr(a.env);
+        return image_environment(image.width, image.height, image.pixels);
+    }
+    if (!a.background.empty()) return color_environment(parse_color(a.background));
+    // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
+    if (a.sky || scene.lights.empty()) return sky_environment(default_sun_direction());
+    return color_environment(glm::vec3(0.05f));
+}
+
+const Camera& find_camera(const Scene& scene, const std::string& name) {
+    if (scene.cameras.empty()) fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
+    std::string names;
+    for (size_t i = 0; i < scene.cameras.size(); i++) {
+        if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
+        names += fmt::format("{}{}: {}", i ? ", " : "", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+    }
+    fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
+}
+
+glm::vec3 vector_of(const std::vector<float>& values, const char* option) {
+    if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) fail("{} must be three finite numbers", option);
+    return {values[0], values[1], values[2]};
+}
+
+Camera choose_camera(const RenderArguments& a, const Scene& scene, const Geometry& geometry, float aspect) {
+    Camera camera = frame_box(geometry.lower, geometry.upper, aspect);
+    if (!a.camera.empty())
+        camera = find_camera(scene, a.camera);
+    else if (a.eye.empty() && a.look.empty() && !scene.cameras.empty())
+        camera = scene.cameras.front();
+    if (!a.eye.empty() || !a.look.empty()) camera.orthographic_height = 0;
+    if (!a.look.empty())
+        camera.look = vector_of(a.look, "--look");
+    else if (!a.eye.empty())
+        camera.look = 0.5f * (geometry.lower + geometry.upper);
+    if (!a.eye.empty()) camera.eye = vector_of(a.eye, "--eye");
+    if (!a.up.empty()) camera.up = vector_of(a.up, "--up");
+    if (a.fov) {
+        if (!(*a.fov > 0 && *a.fov < 180)) fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
+        camera.vertical_fov = *a.fov * 3.14159265f / 180;
+        camera.orthographic_height = 0;
+    }
+    return camera;
+}
+
+/// --material: what a file without materials of its own is good for.
+void override_material(Scene& scene, const std::string& name, const Geometry& geometry) {
+    Material material;
+    material.name = name;
+    if (name == "mirror") {
+        material.base_color = glm::vec3(0.93f, 0.92f, 0.90f);
+        material.metallic = 1;
+        material.roughness = 0;
+    } else if (name == "glass") {
+        material.roughness = 0;
+        material.transmission = 1;
+        material.thickness = 1;
+        material.attenuation_color = glm::vec3(0.75f, 0.92f, 0.85f);
+        material.attenuation_distance = 0.5f * glm::length(geometry.upper - geometry.lower);
+    } else {
+        material.base_color = glm::vec3(0.62f, 0.52f, 0.44f);
+        material.roughness = 0.9f;
+    }
+    for (Material& each : scene.materials) each = material;
+}
+
+/// --floor: two triangles just below the scene.
+void add_floor(Scene& scene, Geometry& geometry) {
+    const glm::vec3 size = geometry.upper - geometry.lower, centre = 0.5f * (geometry.lower + geometry.upper);
+    const float half = 1.5f * std::max({size.x, size.y, size.z}), y = geometry.lower.y - 1e-4f * std::max({size.x, size.y, size.z});
+    Material material;
+    material.name = "floor";
+    material.base_color = glm::vec3(0.35f, 0.36f, 0.38f);
+    material.roughness = 0;
+    material.ior = 1.8f;
+    scene.materials.push_back(material);
+    const uint32_t first = uint32_t(geometry.positions.size());
+    for (int i = 0; i < 4; i++) {
+        const glm::vec3 p(centre.x + (i == 1 || i == 2 ? half : -half), y, centre.z + (i >= 2 ? half : -half));
+        geometry.positions.push_back(p);
+        geometry.normals.push_back({0, 1, 0});
+        geometry.uvs.push_back({0, 0});
+        if (!geometry.colors.empty()) geometry.colors.push_back(glm::vec4(1));
+        geometry.lower = glm::min(geometry.lower, p);
+        geometry.upper = glm::max(geometry.upper, p);
+    }
+    for (const glm::uvec3& t : {glm::uvec3(0, 2, 1), glm::uvec3(0, 3, 2)}) {
+        geometry.triangles.push_back(t + first);
+        geometry.materials.push_back(uint32_t(scene.materials.size() - 1));
+    }
+}
+
+enum class Format { png, exr, hdr };
+
+Format format_of(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (extension == ".png") return Format::png;
+    if (extension == ".exr") return Format::exr;
+    if (extension == ".hdr") return Format::hdr;
+    fail("cannot tell the picture's format from '{}': name it .png, .exr or .hdr", path.string());
+}
+
+fs::path aov_path(const fs::path& output, const std::string& name) {
+    fs::path path = output;
+    return path.replace_extension(name + ".exr");
+}
+
+void write_aovs(const RenderResult& result, const std::vector<std::string>& names, const fs::path& output) {
+    const Aovs& a = result.aovs;
+    const auto component = [](const std::vector<glm::vec4>& values, int i) {
+        std::vector<float> channel;
+        for (const glm::vec4& value : values) channel.push_back(value[i]);
+        return channel;
+    };
+    for (const std::string& name : names) {
+        const fs::path path = aov_path(output, name);
+        const auto write = [&](const std::vector<std::string>& channels, const std::vector<std::vector<float>>& values) {
+            write_exr_channels(path, result.width, result.height, channels, values);
+        };
+        if (name == "depth") write({"Z"}, {a.depth});
+        if (name == "triangle") write({"triangle"}, {a.triangle});
+        if (name == "material") write({"material"}, {a.material});
+        if (name == "normal") write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
+        if (name == "albedo") write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
+        if (name == "position") write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
+    }
+}
+
+void write_picture(const RenderResult& result, const fs::path& path) {
+    if (format_of(path) == Format::png)
+        write_png(path, Image8{result.width, result.height, result.encoded});
+    else
+        write_hdr(path, Image{result.width, result.height, result.radiance});
+}
+
+RenderSettings settings_of(const RenderArguments& a) {
+    RenderSettings settings;
+    const glm::uvec2 size = parse_size(a.size);
+    settings.width = size.x;
+    settings.height = size.y;
+    settings.ldc = a.tracing.resolution();
+    settings.hit_auto = a.tracing.hit == "auto";
+    settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
+    settings.trace = a.tracing.tracer != "none";
+    settings.bounces = a.bounces;
+    settings.spp = a.spp;
+    settings.repeat = a.repeat;
+    settings.exposure = float(a.exposure);
+    settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
+    parse_effects(a.effects, settings);
+    settings.aovs = !parse_aovs(a.aov).empty();
+    if (!std::isfinite(a.exposure) || std::abs(a.exposure) > 64) fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
+    if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
+    if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
+    if (a.time != 0) fail("--time {}: animations are not built into this version; leave --time out", a.time);
+    return settings;
+}
+
+/// What a reader of the terminal wants to know, once.
+void report(const RenderArguments& a, const RenderResult& result, size_t triangles, const Device& device, double seconds) {
+    const RenderStats& s = result.stats;
+    fmt::print("{}: {}x{}, {} triangles, {:.1f} M rays", a.output.string(), result.width, result.height, triangles,
+               double(s.rays.primary + s.rays.secondary()) * 1e-6);
+    if (s.ldc) fmt::print(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
+    if (s.timed) fmt::print("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
+    fmt::print("; {:.2f} s in all on {}\n", seconds, device.info().name);
+}
+
+}  // namespace
+
+void run_render(const RenderArguments& a) {
+    const auto start = std::chrono::steady_clock::now();
+    a.tracing.check();
+    format_of(a.output);
+    RenderSettings settings = settings_of(a);
+    const auto aovs = parse_aovs(a.aov);
+    check_writable(a.output);
+    for (const std::string& name : aovs) check_writable(aov_path(a.output, name));
+    if (!a.stats.empty()) check_writable(a.stats);
+
+    Scene scene = load_scene(a.scene);
+    Geometry geometry = flatten(scene);
+    for (const std::string& note : scene.notes) fmt::print(stderr, "peelray: note: {}\n", note);
+    for (const std::string& extension : scene.extensions_unsupported)
+        fmt::print(stderr, "peelray: note: the extension {} has no effect in this version\n", extension);
+    settings.camera = choose_camera(a, scene, geometry, float(settings.width) / float(settings.height));
+    if (!a.material.empty()) override_material(scene, a.material, geometry);
+    if (a.floor) add_floor(scene, geometry);
+    const Environment environment = choose_environment(a, scene);
+
+    Device device({a.device.device, a.device.validate});
+    Renderer renderer(device, scene, geometry, environment);
+    Progress progress("rendering", 1);
+    const RenderResult result = renderer.render(settings, [&](double share) { progress.update(share); });
+    device.check_validation();
+    write_picture(result, a.output);
+    write_aovs(result, aovs, a.output);
+    if (!a.stats.empty()) write_json(a.stats, render_stats(device, result, geometry));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report(a, result, geometry.triangles.size(), device, seconds);
+}
+
+}  // namespace peelray

@@ -1,0 +1,74 @@
+#include "cli/stats.h"
+
+#include <fstream>
+
+#include "base/error.h"
+#include "cli/program.h"
+#include "image/image.h"
+
+namespace peelray {
+
+using Json = nlohmann::ordered_json;
+
+Json device_stats(const Device& device) {
+    return {{"device", device.info().name}, {"kind", device.info().kind}, {"driver", device.info().driver},
+            {"api_version", device.info().api_version}, {"commit", build_commit()}};
+}
+
+Json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes, uint64_t scratch, const char* sampling) {
+    const glm::vec3 upper = grid.origin + glm::vec3(grid.dims) * grid.voxel;
+    return {{"n", resolution},
+            {"voxels", {grid.dims.x, grid.dims.y, grid.dims.z}},
+            {"voxel_size", grid.voxel},
+            {"box", {{"lower", {grid.origin.x, grid.origin.y, grid.origin.z}}, {"upper", {upper.x, upper.y, upper.z}}}},
+            {"builder", "compute"},
+            {"sampling", sampling},
+            {"samples", counts.fragments},
+            {"layers", counts.longest},
+            {"layers_of", "voxel list"},
+            {"occupied_voxels", counts.voxels},
+            {"occupied_nodes", counts.nodes},
+            {"bytes", bytes},
+            {"build_scratch_bytes", scratch},
+            {"triangles_without_area", counts.degenerate},
+            {"triangles_not_finite", counts.invalid}};
+}
+
+Json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry) {
+    const RenderStats& s = result.stats;
+    Json json = device_stats(device);
+    json["image"] = {result.width, result.height};
+    json["triangles"] = geometry.triangles.size();
+    json["timed"] = s.timed;
+    json["frame_ms"] = s.frame_ms;
+    json["build_ms"] = s.build_ms;
+    double trace_ms = 0, shadow_ms = 0;
+    for (const auto& pass : s.passes) {
+        json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
+        if (pass.name == "trace") trace_ms = pass.ms;
+        if (pass.name == "shadow") shadow_ms = pass.ms;
+    }
+    const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
+    json["rays"] = {{"primary", s.rays.primary}, {"reflection", s.rays.reflection}, {"refraction", s.rays.refraction},
+                    {"shadow", s.rays.shadow}, {"ambient", s.rays.ambient}};
+    json["mrays_per_second"] = {{"reflection_and_refraction", rate(s.rays.reflection + s.rays.refraction, trace_ms)},
+                                {"shadow_and_ambient_with_shading", rate(s.rays.shadow + s.rays.ambient, shadow_ms)}};
+    if (s.ldc)
+        json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes, s.hit == HitTest::exact ? "conservative" : "centre");
+    json["hit"] = s.ldc ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
+    json["memory_bytes"] = {{"scene", s.scene_bytes}, {"cube", s.cube_bytes}, {"build_scratch", s.scratch_bytes}, {"frame", s.frame_bytes},
+                            {"peak", s.peak_bytes}};
+    json["redone"] = s.redone;
+    return json;
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        std::ofstream stream(temporary);
+        stream << json.dump(2) << "\n";
+        stream.close();
+        if (!stream) fail("cannot write '{}': is the disk full?", path.string());
+    });
+}
+
+}  // namespace peelray

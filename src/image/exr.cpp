@@ -1,0 +1,234 @@
+// OpenEXR: files of any writer in, our own out.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "image/codecs.h"
+
+namespace peelray {
+namespace {
+
+class MemoryIn : public Imf::IStream {
+  public:
+    explicit MemoryIn(std::string_view bytes) : IStream("memory"), bytes_(bytes) {}
+
+    bool read(char out[], int count) override {
+        if (count < 0 || position_ > bytes_.size() || uint64_t(count) > bytes_.size() - position_)
+            throw std::runtime_error("unexpected end of the file");
+        std::memcpy(out, bytes_.data() + position_, size_t(count));
+        position_ += uint64_t(count);
+        return position_ < bytes_.size();
+    }
+    uint64_t tellg() override { return position_; }
+    void seekg(uint64_t position) override { position_ = position; }
+
+  private:
+    std::string_view bytes_;
+    uint64_t position_ = 0;
+};
+
+class MemoryOut : public Imf::OStream {
+  public:
+    MemoryOut() : OStream("memory") {}
+
+    void write(const char data[], int count) override {
+        const size_t end = position_ + size_t(count);
+        if (end > bytes_.size()) bytes_.resize(end);
+        std::memcpy(bytes_.data() + position_, data, size_t(count));
+        position_ = end;
+    }
+    uint64_t tellp() override { return position_; }
+    void seekp(uint64_t position) override { position_ = position; }
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    std::string bytes_;
+    size_t position_ = 0;
+};
+
+/// Which channel of the file becomes red, green, blue and alpha; "" : none.
+struct Selection {
+    std::array<std::string, 4> names;
+    bool luminance_chroma = false;
+};
+
+bool has(const Imf::ChannelList& channels, const std::string& name) {
+    return channels.findChannel(name) != nullptr;
+}
+
+Selection select(const std::filesystem::path& path, const Imf::ChannelList& channels) {
+    std::vector<std::string> colors;
+    std::string all;
+    for (auto it = channels.begin(); it != channels.end(); ++it) {
+        if (it.name() != std::string_view("A")) colors.emplace_back(it.name());
+        all += (all.empty() ? "" : ", ") + std::string(it.name());
+    }
+    const std::string alpha = has(channels, "A") ? "A" : "";
+    if (colors.size() == 1) return {{colors[0], colors[0], colors[0], alpha}, false};
+    if (has(channels, "R") && has(channels, "G") && has(channels, "B")) return {{"R", "G", "B", alpha}, false};
+    if (has(channels, "Y") && has(channels, "RY") && has(channels, "BY")) return {{}, true};
+    if (has(channels, "Y")) return {{"Y", "Y", "Y", alpha}, false};
+    for (const std::string& name : colors) {  // a layer of its own, such as "beauty.R"
+        if (!name.ends_with(".R")) continue;
+        const std::string layer = name.substr(0, name.size() - 1);
+        if (has(channels, layer + "G") && has(channels, layer + "B"))
+            return {{name, layer + "G", layer + "B", has(channels, layer + "A") ? layer + "A" : ""}, false};
+    }
+    fail("cannot read {}: no colour among its channels ({}); save it with R, G, B or Y", path.string(), all);
+}
+
+Image read_luminance_chroma(std::string_view bytes, const Imath::Box2i& window, Image image) {
+    MemoryIn stream(bytes);
+    Imf::RgbaInputFile file(stream);
+    std::vector<Imf::Rgba> row(image.width);
+    for (int y = window.min.y; y <= window.max.y; ++y) {
+        // Stride 0 in y and a base that cancels the window's offset: each row lands in `row`. The address is never
+        // formed outside of OpenEXR, hence the integer.
+        const auto base = reinterpret_cast<intptr_t>(row.data()) - intptr_t(window.min.x) * intptr_t(sizeof(Imf::Rgba));
+        file.setFrameBuffer(reinterpret_cast<Imf::Rgba*>(base), 1, 0);
+        file.readPixels(y);
+        for (uint32_t x = 0; x < image.width; ++x)
+            image.at(x, uint32_t(y - window.min.y)) = {row[x].r, row[x].g, row[x].b, row[x].a};
+    }
+    return image;
+}
+
+Image read_channels(Imf::InputPart& part, const Imath::Box2i& window, const Selection& selection, Image image) {
+    Imf::FrameBuffer buffer;
+    for (int c = 0; c < 4; ++c) {
+        if (selection.names[size_t(c)].empty()) continue;
+        if (c > 0 && c < 3 && selection.names[size_t(c)] == selection.names[0]) continue;
+        buffer.insert(selection.names[size_t(c)], Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][c], window,
+                                                                   sizeof(glm::vec4), sizeof(glm::vec4) * image.width));
+    }
+    part.setFrameBuffer(buffer);
+    part.readPixels(window.min.y, window.max.y);
+    if (selection.names[1] == selection.names[0])
+        for (glm::vec4& pixel : image.pixels) pixel.y = pixel.z = pixel.x;
+    return image;
+}
+
+Image decode(const std::filesystem::path& path, std::string_view bytes) {
+    // A limit of the library, for the process: it guards what OpenEXR itself allocates while it reads headers.
+    Imf::Header::setMaxImageSize(int(max_side), int(max_side));
+    Imf::Header::setMaxTileSize(int(max_side), int(max_side));
+    MemoryIn stream(bytes);
+    Imf::MultiPartInputFile file(stream);
+    int number = 0;
+    while (number < file.parts() && file.header(number).hasType() && Imf::isDeepData(file.header(number).type()))
+        ++number;
+    if (number == file.parts()) fail("cannot read {}: it holds deep data only; flatten it first", path.string());
+    Imf::InputPart part(file, number);
+    const Imath::Box2i window = part.header().dataWindow();
+    check_size("read", path, int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1);
+    const Selection selection = select(path, part.header().channels());
+    for (const std::string& name : selection.names) {
+        const Imf::Channel* channel = name.empty() ? nullptr : part.header().channels().findChannel(name);
+        if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
+            fail("cannot read {}: its channel {} is subsampled; save it at full resolution", path.string(), name);
+    }
+    if (selection.luminance_chroma && number != 0)
+        fail("cannot read {}: luminance and chroma in a later part; save it with R, G, B", path.string());
+    Image image{uint32_t(window.max.x - window.min.x + 1), uint32_t(window.max.y - window.min.y + 1), {}};
+    image.pixels.assign(size_t(image.width) * image.height, glm::vec4(0, 0, 0, 1));
+    return selection.luminance_chroma ? read_luminance_chroma(bytes, window, std::move(image))
+                                      : read_channels(part, window, selection, std::move(image));
+}
+
+/// One channel to write: `data` is float32 or half, `stride` bytes from pixel to pixel.
+struct Plane {
+    std::string name;
+    const void* data;
+    size_t stride;
+};
+
+std::string encode(uint32_t width, uint32_t height, Imf::PixelType type, const std::vector<Plane>& planes) {
+    Imf::Header header{int(width), int(height)};
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer buffer;
+    for (const Plane& plane : planes) {
+        header.channels().insert(plane.name, Imf::Channel(type));
+        buffer.insert(plane.name,
+                      Imf::Slice::Make(type, plane.data, header.dataWindow(), plane.stride, plane.stride * width));
+    }
+    MemoryOut stream;
+    {
+        Imf::OutputFile file(stream, header);  // completes the line table when it goes
+        file.setFrameBuffer(buffer);
+        file.writePixels(int(height));
+    }
+    return stream.bytes();
+}
+
+/// Calls `work` and turns OpenEXR's exceptions into ours, on one line.
+template <typename Work>
+auto guarded(std::string_view doing, const std::filesystem::path& path, Work&& work) {
+    try {
+        return work();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail("cannot {} {}: not enough memory", doing, path.string());
+    } catch (const std::exception& error) {
+        std::string text = error.what();
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        fail("cannot {} {}: OpenEXR says: {}", doing, path.string(), text);
+    }
+}
+
+}  // namespace
+
+Image decode_exr(const std::filesystem::path& path, std::string_view bytes) {
+    return guarded("read", path, [&] { return decode(path, bytes); });
+}
+
+std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full) {
+    const bool opaque =
+        std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) { return p.w == 1; });
+    const char* names[] = {"R", "G", "B", "A"};
+    const size_t count = opaque ? 3 : 4;
+    std::vector<Plane> planes;
+    std::vector<std::array<Imath::half, 4>> halves;
+    if (!full) {
+        halves.reserve(image.pixels.size());
+        const auto narrow = [](float value) {  // NaN stays: a reader should see it
+            return Imath::half(value > max_half ? max_half : value < -max_half ? -max_half : value);
+        };
+        for (const glm::vec4& p : image.pixels) halves.push_back({narrow(p.x), narrow(p.y), narrow(p.z), narrow(p.w)});
+    }
+    for (size_t c = 0; c < count; ++c) {
+        if (full)
+            planes.push_back({names[c], &image.pixels[0][int(c)], sizeof(glm::vec4)});
+        else
+            planes.push_back({names[c], &halves[0][c], sizeof halves[0]});
+    }
+    return guarded("write", path,
+                   [&] { return encode(image.width, image.height, full ? Imf::FLOAT : Imf::HALF, planes); });
+}
+
+void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
+                        const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels) {
+    check_size("write", path, width, height);
+    assert(!names.empty() && names.size() == channels.size());
+    std::vector<Plane> planes;
+    for (size_t i = 0; i < names.size(); ++i) {
+        assert(channels[i].size() == size_t(width) * height);
+        planes.push_back({names[i], channels[i].data(), sizeof(float)});
+    }
+    store_file(path, guarded("write", path, [&] { return encode(width, height, Imf::FLOAT, planes); }));
+}
+
+}  // namespace peelray

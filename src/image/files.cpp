@@ -1,0 +1,148 @@
+// Whole files in and out; nothing half-written is ever seen under the final name.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "image/codecs.h"
+
+namespace fs = std::filesystem;
+
+namespace peelray {
+namespace {
+
+std::string reason(int code) {
+    return std::generic_category().message(code);
+}
+
+/// A file descriptor that closes itself.
+struct Descriptor {
+    int number;
+    explicit Descriptor(int n) : number(n) {}
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+};
+
+/// Removes a temporary file unless it has been renamed.
+struct Temporary {
+    fs::path path;
+    bool renamed = false;
+    ~Temporary() {
+        std::error_code ignored;
+        if (!renamed) fs::remove(path, ignored);
+    }
+};
+
+/// The file that `path` stands for. A link is followed, so that the link stays; devices, pipes and folders are refused,
+/// since renaming onto /dev/null would replace it.
+fs::path destination(const fs::path& path) {
+    if (path.empty()) fail("cannot write a file without a name: name the file to write");
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::none)
+        fail("cannot write {}: {}; name another one", path.string(), error.message());
+    if (fs::is_directory(status) || !path.has_filename())
+        fail("cannot write {}: it is a folder; name a file in it", path.string());
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        fail("cannot write {}: it is not a regular file; name another one", path.string());
+    const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    const fs::file_status parent = fs::status(folder, error);
+    if (parent.type() == fs::file_type::not_found)
+        fail("cannot write {}: there is no folder {}; make it or name another one", path.string(), folder.string());
+    if (fs::exists(parent) && !fs::is_directory(parent))
+        fail("cannot write {}: {} is not a folder; name another one", path.string(), folder.string());
+    return target;
+}
+
+/// Creates an empty file beside `target` under a name that nobody else has. The extension stays: writers may choose by
+/// it. The name does not grow with the target's, which may be as long as the file system allows.
+fs::path reserve(const fs::path& path, const fs::path& target) {
+    static std::atomic<unsigned> counter{0};
+    std::string extension = target.extension().string();
+    if (extension.size() > 16) extension.clear();
+    for (;;) {
+        const fs::path name =
+            target.parent_path() / fmt::format(".peelray-{}-{}.tmp{}", ::getpid(), counter++, extension);
+        const Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        if (file.number >= 0) return name;
+        if (errno != EEXIST)
+            fail("cannot write {}: {}; name a place that can be written", path.string(), reason(errno));
+    }
+}
+
+/// 0, or the system's error number.
+int write_bytes(const fs::path& path, std::string_view bytes) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (file.number < 0) return errno;
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return errno;
+        bytes.remove_prefix(size_t(written));
+    }
+    // Network file systems and quotas report a failed write as late as here.
+    return ::close(std::exchange(file.number, -1)) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path) {
+    const Temporary probe{reserve(path, destination(path))};
+}
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    const fs::path target = destination(path);
+    Temporary temporary{reserve(path, target)};
+    write(temporary.path);
+    std::error_code error;
+    const fs::file_status old = fs::status(target, error);
+    if (fs::exists(old)) fs::permissions(temporary.path, old.permissions(), error);
+    fs::rename(temporary.path, target, error);
+    if (error) fail("cannot write {}: {}; name a place that can be written", path.string(), error.message());
+    temporary.renamed = true;
+}
+
+std::string read_file(const fs::path& path) {
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.number < 0) fail("cannot read {}: {}; check the path", path.string(), reason(errno));
+    std::string bytes;
+    std::error_code unknown;
+    const uintmax_t size = fs::file_size(path, unknown);
+    if (!unknown) bytes.reserve(size);
+    char block[1 << 16];
+    for (;;) {
+        const ssize_t count = ::read(file.number, block, sizeof block);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail("cannot read {}: {}; check the path", path.string(), reason(errno));
+        if (count == 0) break;
+        bytes.append(block, size_t(count));
+    }
+    if (bytes.empty()) fail("cannot read {}: the file is empty; it was not written to the end", path.string());
+    return bytes;
+}
+
+void store_file(const fs::path& path, std::string_view bytes) {
+    write_atomically(path, [&](const fs::path& temporary) {
+        if (const int error = write_bytes(temporary, bytes))
+            fail("cannot write {}: {}; {} bytes are needed there", path.string(), reason(error), bytes.size());
+    });
+}
+
+void check_size(std::string_view doing, const fs::path& path, int64_t width, int64_t height) {
+    if (width <= 0 || height <= 0)
+        fail("cannot {} {}: an image of {} x {} pixels is empty; each side needs at least one", doing, path.string(),
+             width, height);
+    if (width > max_side || height > max_side || uint64_t(width) * uint64_t(height) > max_pixels)
+        fail("cannot {} {}: {} x {} pixels are too many; at most {} a side and {} in all are supported", doing,
+             path.string(), width, height, max_side, max_pixels);
+}
+
+}  // namespace peelray

@@ -1,0 +1,42 @@
+// The oracle's BVH. Private to src/reference.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include "reference/ray_triangle.h"
+
+namespace peelray {
+
+/// Embree sees user geometry only, so that no decision of its single-precision triangle test counts. It works in a
+/// space of its own (the scene's centre at 0, its diagonal 1), so that neither large coordinates nor extreme scales
+/// cost digits.
+struct Bvh {
+    /// In Embree's space. Rounding the ray to float moves it by less than 5·10⁻⁷ there, an allowed offset by 2·10⁻⁶:
+    /// boxes enlarged by this much meet the ray whenever the triangle could.
+    static constexpr double reach = 5e-6;
+
+    struct Found {
+        OracleHit hit{std::numeric_limits<double>::infinity(), ~0u, 0, 0};
+        uint32_t index = ~0u;  ///< into triangles.corners
+    };
+
+    explicit Bvh(const Geometry& geometry);
+    ~Bvh();
+    Bvh(const Bvh&) = delete;
+    Bvh& operator=(const Bvh&) = delete;
+
+    Found nearest(const OracleRay& ray, uint32_t skip) const;
+    bool occluded(const OracleRay& ray) const;
+    /// All triangles whose enlarged boxes the ray meets, `reach` before tmin and behind tmax included.
+    std::vector<uint32_t> along(const OracleRay& ray) const;
+
+    TriangleSet triangles;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+};
+
+struct Oracle::Impl : Bvh {
+    using Bvh::Bvh;
+};
+
+}  // namespace peelray

@@ -1,0 +1,369 @@
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "render/camera.h"
+#include "render/path_queues.h"
+
+namespace peelray {
+namespace {
+
+/// R2 sequence (Roberts 2018): sample 0 is the pixel's centre, any prefix is spread evenly.
+glm::vec2 jitter_of(uint32_t sample) {
+    const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;
+    return {float(x - std::floor(x)), float(y - std::floor(y))};
+}
+
+/// Adds up pass times by name, keeping the order of first appearance.
+class TimeTable {
+  public:
+    void add(const std::vector<PassTime>& times) {
+        for (const PassTime& time : times) {
+            auto found = std::find_if(rows_.begin(), rows_.end(), [&](auto& row) { return row.name == time.name; });
+            if (found == rows_.end()) found = rows_.insert(rows_.end(), {time.name, 0});
+            found->ms += time.ms;
+        }
+    }
+    const std::vector<RenderStats::Time>& rows() const { return rows_; }
+
+  private:
+    std::vector<RenderStats::Time> rows_;
+};
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+}
+
+}  // namespace
+
+AutoChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
+    AutoChoice choice{settings.ldc, settings.hit};
+    // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
+    if (settings.hit_auto) choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
+    if (choice.ldc == 0) {
+        if (choice.hit == HitTest::planar)
+            choice.ldc = 1024;
+        else
+            choice.ldc = triangles < 50'000 ? 256 : triangles < 1'500'000 ? 512 : 1024;
+    }
+    return choice;
+}
+
+struct Renderer::Impl {
+    Device& device;
+    GpuScene scene;
+    glm::vec3 lower, upper;
+    ComputeBuilder builder;
+    Cube cube;
+    PathQueues queues;
+    Commands commands;
+    Buffer frame_buffer, frame_staging, visibility, picture, encoded, aov_buffer;
+    Image2D visibility_image, depth_image;
+    uint32_t image_width = 0, image_height = 0;
+
+    RenderSettings settings;
+    HitTest hit = HitTest::exact;
+    Frame frame{};
+    uint32_t last_level = 0, band_rows = 0;
+    RayCounts rays;
+    uint32_t redone = 0;
+    TimeTable times;
+    double frame_ms = 0;
+
+    Impl(Device& device, const Scene& source, const Geometry& geometry, const Environment& environment)
+        : device(device), scene(device, source, geometry, environment), lower(geometry.lower), upper(geometry.upper), builder(device),
+          queues(device), commands(device) {
+        frame_buffer = Buffer(device, "frame constants", sizeof(Frame));
+    }
+
+    void check_settings() const;
+    void prepare_images();
+    void prepare_frame();
+    void submit();
+    void build_cube();
+    void record_visibility(uint32_t sample);
+    LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
+    void record_primary(const LevelParams& p);
+    void record_scatter(const LevelParams& p);
+    void record_shadow(const LevelParams& p);
+    void record_band(uint32_t sample, uint32_t first_row);
+    void render_frame(const std::function<void(double)>& progress);
+    void render_aovs(Aovs& aovs);
+    Groups level_groups(uint32_t level) { return groups_for(queues.level(level).capacity, 64); }
+};
+
+void Renderer::Impl::check_settings() const {
+    const uint32_t largest = std::min(device.limits().maxImageDimension2D, device.limits().maxFramebufferWidth);
+    if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest)
+        fail("a picture of {}x{} pixels is impossible: the device '{}' draws 1x1 to {}x{} (--size)", settings.width, settings.height,
+             device.info().name, largest, largest);
+    const uint64_t bytes = uint64_t(settings.width) * settings.height * sizeof(glm::vec4);
+    if (bytes > device.limits().maxStorageBufferRange)
+        fail("a picture of {}x{} pixels needs {:.0f} MiB at once, but the device '{}' binds at most {:.0f}: choose a smaller --size", settings.width,
+             settings.height, double(bytes) / (1 << 20), device.info().name, double(device.limits().maxStorageBufferRange) / (1 << 20));
+    if (settings.bounces >= QUEUE_LEVELS) fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
+    if (settings.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+}
+
+void Renderer::Impl::prepare_images() {
+    if (image_width == settings.width && image_height == settings.height) return;
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    visibility_image.reset();
+    depth_image.reset();
+    visibility_image = Image2D(device, "visibility", settings.width, settings.height, VK_FORMAT_R32_UINT,
+                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    depth_image = Image2D(device, "depth", settings.width, settings.height, VK_FORMAT_D32_SFLOAT,
+                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    ensure_size(device, visibility, "visible triangles", pixels * 4);
+    ensure_size(device, picture, "picture", pixels * 16);
+    ensure_size(device, encoded, "encoded picture", pixels * 4);
+    image_width = settings.width;
+    image_height = settings.height;
+}
+
+void Renderer::Impl::prepare_frame() {
+    last_level = settings.trace ? settings.bounces : 0;
+    const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
+    // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to grow.
+    const uint64_t most = std::min<uint64_t>(4u << 20, device.limits().maxStorageBufferRange / (2 * sizeof(PathNode)));
+    const uint32_t rows = (settings.height + 7) / 8 * 8;
+    band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
+    queues.prepare(row_pixels * band_rows, last_level + 1);
+
+    frame = {};
+    frame.grid = cube.grid;
+    describe_camera(frame, settings.camera, float(settings.width) / float(settings.height), lower, upper);
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.row_pixels = row_pixels;
+    scene.describe(frame);
+    frame.effects = 0;
+    if (settings.trace)
+        frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) | (settings.refraction ? EFFECT_REFRACTION : 0u) |
+                        (settings.shadow ? EFFECT_SHADOW : 0u) | (settings.ambient ? EFFECT_AMBIENT : 0u);
+    frame.planar = hit == HitTest::planar;
+    // Planar hits know a surface to about a voxel: a ray starts beyond its own surface's samples (DESIGN.md section 3).
+    frame.surface_offset = settings.trace && hit == HitTest::planar ? 1.5f * cube.grid.voxel : 0;
+    frame.spp = settings.spp;
+    frame.last_level = last_level;
+    commands.upload(frame_buffer, std::span<const Frame>(&frame, 1));
+}
+
+void Renderer::Impl::submit() {
+    commands.submit();
+    times.add(commands.times());
+    frame_ms += commands.elapsed_ms();
+}
+
+void Renderer::Impl::build_cube() {
+    for (;;) {
+        builder.record(commands, scene.triangles, cube);
+        submit();
+        if (builder.finish(cube)) return;
+        redone++;
+    }
+}
+
+void Renderer::Impl::record_visibility(uint32_t sample) {
+    commands.draw(device.raster_pass("visibility"),
+                  {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
+                  VisibilityParams{jitter_of(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
+}
+
+LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
+    LevelParams p{};
+    p.level = level;
+    p.capacity = queues.level(level).capacity;
+    p.next_capacity = queues.level(level + 1).capacity;
+    p.sample_index = sample;
+    p.jitter = jitter_of(sample);
+    p.first_row = first_row;
+    p.rows = band_rows;
+    // Level 0 holds exactly the band's pixels; the last band may be lower.
+    if (level == 0) p.capacity = frame.row_pixels * std::min(band_rows, (settings.height - first_row + 7) / 8 * 8);
+    return p;
+}
+
+void Renderer::Impl::record_primary(const LevelParams& p) {
+    const PathLevel& level = queues.level(0);
+    commands.run(device.pass("primary"),
+                 {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles},
+                  {"visibility", visibility}, {"rays", level.rays}, {"states", level.states}, {"hits", level.hits}, {"queue", queues.counters()}},
+                 p, groups_for(p.capacity, 64));
+}
+
+void Renderer::Impl::record_scatter(const LevelParams& p) {
+    const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
+    commands.run_indirect(device.pass("scatter"),
+                          {{"frame", frame_buffer}, {"materials", scene.materials}, {"texture_infos", scene.texture_infos},
+                           {"texels", scene.texels}, {"normals", scene.normals}, {"uvs", scene.uvs}, {"colors", scene.colors},
+                           {"triangle_materials", scene.triangle_materials}, {"environment", scene.environment},
+                           {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}, {"rays", level.rays},
+                           {"states", level.states}, {"hits", level.hits}, {"nodes", level.nodes}, {"queue", queues.counters()},
+                           {"next_rays", next.rays}, {"next_states", next.states}, {"next_skip", next.skip}},
+                          p, queues.groups(), p.level * 12);
+}
+
+void Renderer::Impl::record_shadow(const LevelParams& p) {
+    const PathLevel& level = queues.level(p.level);
+    const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
+    // Without a cube its bindings still need buffers; the shader does not read them then.
+    const auto cube_buffer = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
+    commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
+                          {{"top_table", cube_buffer(cube.top_table)}, {"node_table", cube_buffer(cube.node_table)},
+                           {"voxel_table", cube_buffer(cube.voxel_table)}, {"samples", cube_buffer(cube.samples)},
+                           {"sample_ids", cube_buffer(cube.sample_ids)}, {"positions", scene.triangles.positions},
+                           {"triangles", scene.triangles.triangles}, {"frame", frame_buffer}, {"materials", scene.materials},
+                           {"texture_infos", scene.texture_infos}, {"texels", scene.texels}, {"normals", scene.normals}, {"uvs", scene.uvs},
+                           {"colors", scene.colors}, {"triangle_materials", scene.triangle_materials},
+                           {"rays", level.rays}, {"states", level.states}, {"hits", level.hits}, {"nodes", level.nodes},
+                           {"queue", queues.counters()}, {"lights", scene.lights}},
+                          p, queues.groups(), p.level * 12);
+}
+
+void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
+    commands.fill(queues.counters(), 0);
+    record_primary(level_params(0, sample, first_row));
+    for (uint32_t i = 0; i <= last_level; i++) {
+        const PathLevel& level = queues.level(i);
+        const LevelParams p = level_params(i, sample, first_row);
+        commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
+        if (i > 0)
+            record_trace(commands, device, cube, scene.triangles,
+                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull}, level.hits, hit, false);
+        record_scatter(p);
+        record_shadow(p);
+    }
+    for (uint32_t i = last_level; i-- > 0;)
+        commands.run_indirect(device.pass("gather"),
+                              {{"nodes", queues.level(i).nodes}, {"next_nodes", queues.level(i + 1).nodes}, {"queue", queues.counters()}},
+                              level_params(i, sample, first_row), queues.groups(), i * 12);
+    const LevelParams p = level_params(0, sample, first_row);
+    commands.run(device.pass("accumulate"),
+                 {{"frame", frame_buffer}, {"nodes", queues.level(0).nodes}, {"hits", queues.level(0).hits}, {"queue", queues.counters()},
+                  {"picture", picture}},
+                 p, groups_for(p.capacity, 64));
+    commands.copy(queues.counters(), queues.readback(), QUEUE_COUNTERS * 4);
+}
+
+void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
+    rays = {};
+    times = {};
+    frame_ms = 0;
+    if (settings.trace) build_cube();
+    for (uint32_t sample = 0; sample < settings.spp; sample++)
+        for (uint32_t row = 0; row < settings.height; row += band_rows) {
+            if (row == 0) record_visibility(sample);
+            for (;;) {
+                record_band(sample, row);
+                submit();
+                if (queues.finish()) break;
+                redone++;  // the counters told how much room is needed; the picture was left alone
+            }
+            rays.reflection += queues.count(QUEUE_REFLECTION);
+            rays.refraction += queues.count(QUEUE_REFRACTION);
+            rays.shadow += queues.count(QUEUE_SHADOW);
+            rays.ambient += queues.count(QUEUE_AMBIENT);
+            if (progress) progress((sample + double(row) / settings.height) / settings.spp);
+        }
+    rays.primary = uint64_t(settings.width) * settings.height * settings.spp;
+    const uint32_t pixels = settings.width * settings.height;
+    const TonemapParams p{pixels, std::exp2(settings.exposure) / float(settings.spp), uint32_t(settings.tonemap)};
+    commands.run(device.pass("tonemap"), {{"picture", picture}, {"encoded", encoded}}, p, groups_for(pixels, 64));
+    submit();
+}
+
+void Renderer::Impl::render_aovs(Aovs& aovs) {
+    const size_t pixels = size_t(settings.width) * settings.height;
+    if (pixels * 64 > device.limits().maxStorageBufferRange)
+        fail("auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a smaller --size", settings.width,
+             settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
+    ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
+    record_visibility(0);
+    for (uint32_t row = 0; row < settings.height; row += band_rows) {
+        const LevelParams p = level_params(0, 0, row);
+        record_primary(p);
+        commands.run(device.pass("aov"),
+                     {{"frame", frame_buffer}, {"materials", scene.materials}, {"texture_infos", scene.texture_infos}, {"texels", scene.texels},
+                      {"normals", scene.normals}, {"uvs", scene.uvs}, {"colors", scene.colors}, {"triangle_materials", scene.triangle_materials},
+                      {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}, {"rays", queues.level(0).rays},
+                      {"hits", queues.level(0).hits}, {"aovs", aov_buffer}},
+                     p, groups_for(p.capacity, 64));
+    }
+    commands.submit();
+    const auto data = commands.download<glm::vec4>(aov_buffer, pixels * 4);
+    for (size_t i = 0; i < pixels; i++) {
+        aovs.depth.push_back(data[4 * i].x);
+        aovs.triangle.push_back(data[4 * i].y);
+        aovs.material.push_back(data[4 * i].z);
+        aovs.normal.push_back(data[4 * i + 1]);
+        aovs.albedo.push_back(data[4 * i + 2]);
+        aovs.position.push_back(data[4 * i + 3]);
+    }
+}
+
+Renderer::Renderer(Device& device, const Scene& scene, const Geometry& geometry, const Environment& environment)
+    : impl_(std::make_unique<Impl>(device, scene, geometry, environment)) {}
+
+Renderer::~Renderer() = default;
+
+RenderResult Renderer::render(const RenderSettings& settings, const std::function<void(double)>& progress) {
+    Impl& r = *impl_;
+    r.settings = settings;
+    r.check_settings();
+    const AutoChoice choice = choose_automatically(r.scene.triangles.count, settings);
+    r.hit = choice.hit;
+    r.redone = 0;
+    r.prepare_images();
+    if (settings.trace) r.builder.prepare(r.cube, r.scene.triangles, choice.ldc, sampling_for(choice.hit));
+    r.prepare_frame();
+
+    RenderResult result;
+    std::map<std::string, std::vector<double>> samples;
+    std::vector<double> frames;
+    const uint32_t repeat = std::max(settings.repeat, 1u);
+    for (uint32_t i = 0; i < repeat; i++) {
+        r.render_frame([&](double share) {
+            if (progress) progress((i + share) / repeat);
+        });
+        // The first of several frames warms up: pipelines, memory, clocks.
+        if (repeat > 1 && i == 0) continue;
+        for (const auto& row : r.times.rows()) samples[row.name].push_back(row.ms);
+        frames.push_back(r.frame_ms);
+    }
+    RenderStats& stats = result.stats;
+    for (const auto& row : r.times.rows()) {
+        stats.passes.push_back({row.name, median(samples[row.name])});
+        if (row.name.starts_with("build/")) stats.build_ms += stats.passes.back().ms;
+    }
+    stats.frame_ms = median(frames);
+    stats.timed = r.device.timestamp_period() > 0;
+    stats.rays = r.rays;
+    stats.redone = r.redone;
+    stats.hit = choice.hit;
+    stats.scene_bytes = r.scene.bytes();
+    stats.frame_bytes = r.queues.bytes() + r.picture.bytes() + r.encoded.bytes() + r.visibility.bytes();
+    if (settings.trace) {
+        stats.ldc = choice.ldc;
+        stats.grid = r.cube.grid;
+        stats.cube = r.cube.counts;
+        stats.cube_bytes = r.cube.bytes().total();
+        stats.scratch_bytes = r.builder.scratch_bytes();
+    }
+    result.width = settings.width;
+    result.height = settings.height;
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    result.radiance = r.commands.download<glm::vec4>(r.picture, pixels);
+    for (glm::vec4& pixel : result.radiance) pixel /= float(settings.spp);
+    result.encoded = r.commands.download<uint32_t>(r.encoded, pixels);
+    if (settings.aovs) r.render_aovs(result.aovs);
+    stats.peak_bytes = r.device.peak_allocated();
+    return result;
+}
+
+}  // namespace peelray

@@ -1,0 +1,42 @@
+// Where light comes from on a miss: an image, a procedural sky or a colour. Shared by every tracer.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+/// An environment map in equirectangular form with what shading needs of it. The image's centre looks along -z, its right
+/// edge continues at its left; the top row is +y.
+struct Environment {
+    uint32_t width = 0, height = 0, levels = 0;
+    std::vector<glm::vec4> texels;  ///< all levels, finest first, each half the size (rounded down, at least 1) of the one before
+    std::array<glm::vec3, 9> irradiance{};  ///< E(n) as factors of 1, y, z, x, xy, yz, 3z²-1, xz, x²-y² (Ramamoorthi, Hanrahan 2001)
+    glm::vec3 sun_direction{0, 1, 0};  ///< unit, to the sun
+    glm::vec3 sun_radiance{0};         ///< of its disc, which the texels do not hold
+    float sun_cosine = 2;              ///< cosine of the disc's angular radius; 2: no disc
+    std::vector<Light> lights;         ///< directional lights that stand for the sun or the image's brightest spot
+};
+
+/// A clear sky over grey ground with the sun at `sun_direction` (unit, to the sun). Made for pleasant pictures, not for
+/// measured ones: sun and sky give a horizontal surface about 3.6 and 1.6 units of irradiance.
+Environment sky_environment(const glm::vec3& sun_direction);
+
+/// The sun's place when the user gives none.
+glm::vec3 default_sun_direction();
+
+/// The same radiance from everywhere.
+Environment color_environment(const glm::vec3& radiance);
+
+/// An equirectangular image (row 0 at the top). If a spot of it outshines everything else (a sun), a directional light takes
+/// its place in the diffuse light, so that it casts shadows; reflections still see the image as it is.
+Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels);
+
+/// Unit direction of an equirectangular position (u, v in [0, 1]).
+glm::vec3 environment_direction(float u, float v);
+
+}  // namespace peelray

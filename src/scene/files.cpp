@@ -1,0 +1,131 @@
+#include "scene/files.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "base/error.h"
+
+namespace peelray {
+
+namespace fs = std::filesystem;
+
+std::string printable(std::string_view text, size_t limit) {
+    std::string line;
+    for (const char c : text.substr(0, limit)) line += static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
+    return text.size() > limit ? line + "..." : line;
+}
+
+Bytes read_file(const fs::path& path, const std::string& where) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    const std::string name = (where.empty() ? "" : where + ": ") + printable(path.string(), 1000);
+    if (!fs::exists(status)) fail("{}: no such file; check the path", name);
+    if (!fs::is_regular_file(status)) fail("{}: not a regular file; check the path", name);
+    const uintmax_t size = fs::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream) fail("{}: cannot be read; check its permissions", name);
+    Bytes bytes(size);
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    if (static_cast<uintmax_t>(stream.gcount()) != size) fail("{}: only {} of {} bytes could be read", name, stream.gcount(), size);
+    return bytes;
+}
+
+namespace {
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+std::array<int8_t, 256> base64_table() {
+    std::array<int8_t, 256> table;
+    table.fill(-1);
+    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < digits.size(); ++i) table[static_cast<uint8_t>(digits[i])] = static_cast<int8_t>(i);
+    return table;
+}
+
+Bytes decode_base64(std::string_view text, const std::string& where) {
+    static const std::array<int8_t, 256> table = base64_table();
+    while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+    if (text.size() % 4 == 1) fail("{}: the base64 data is truncated ({} digits)", where, text.size());
+    Bytes bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    uint32_t group = 0;
+    int bits = 0;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const int digit = table[static_cast<uint8_t>(text[i])];
+        if (digit < 0) fail("{}: character {} of the base64 data is no base64 digit", where, i);
+        group = (group << 6) | static_cast<uint32_t>(digit);
+        bits += 6;
+        if (bits >= 8) {
+            bits -= 8;
+            bytes.push_back(static_cast<uint8_t>(group >> bits));
+        }
+    }
+    return bytes;
+}
+
+/// "http:", "file:", also "C:": a letter followed by letters, digits, '+', '-', '.' up to a colon.
+bool has_scheme(std::string_view uri) {
+    const size_t colon = uri.find(':');
+    if (colon == std::string_view::npos || colon == 0 || !std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
+    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon), [](unsigned char c) {
+        return std::isalnum(c) || c == '+' || c == '-' || c == '.';
+    });
+}
+
+}  // namespace
+
+std::string percent_decode(std::string_view text, const std::string& where) {
+    std::string out;
+    out.reserve(text.size());
+    for (size_t i = 0; i < text.size(); ++i) {
+        char c = text[i];
+        if (c == '%') {
+            const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+            const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
+            if (high < 0 || low < 0) fail("{}: the URI \"{}\" has a stray '%'; write it as %25", where, printable(text));
+            c = static_cast<char>(high * 16 + low);
+            i += 2;
+        }
+        if (c == 0) fail("{}: the URI \"{}\" holds a zero byte", where, printable(text));
+        out += c;
+    }
+    return out;
+}
+
+bool is_data_uri(std::string_view uri) {
+    return uri.starts_with("data:");
+}
+
+Bytes decode_data_uri(std::string_view uri, const std::string& where) {
+    const size_t comma = uri.find(',');
+    if (!is_data_uri(uri) || comma == std::string_view::npos) fail("{}: \"{}\" is no valid data URI", where, printable(uri, 40));
+    const std::string_view header = uri.substr(0, comma), body = uri.substr(comma + 1);
+    if (header.ends_with(";base64")) return decode_base64(body, where);
+    const std::string text = percent_decode(body, where);
+    return {text.begin(), text.end()};
+}
+
+fs::path resolve_inside(const fs::path& folder, const std::string& relative, const std::string& where) {
+    const std::string shown = printable(relative);
+    const fs::path wanted(relative);
+    if (relative.empty()) fail("{}: the URI is empty", where);
+    if (wanted.is_absolute() || relative[0] == '\\') fail("{}: refused to read the absolute path \"{}\"; keep the file in the scene's folder", where, shown);
+    // A file really called "a:b" is fine; "http://…", "file:…" and "C:…" are not ours to open.
+    std::error_code error;
+    if (has_scheme(relative) && !fs::exists(folder / wanted, error)) fail("{}: refused to read \"{}\"; only files in the scene's folder and data: URIs are read", where, shown);
+    const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+    if (error) fail("{}: the folder {} cannot be resolved: {}", where, folder.string(), error.message());
+    const fs::path target = fs::weakly_canonical(root / wanted, error);
+    if (error) fail("{}: \"{}\" cannot be resolved: {}", where, shown, error.message());
+    const auto [end, unused] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
+    if (end != root.end()) fail("{}: refused to read \"{}\", which leads outside the scene's folder", where, shown);
+    return target;
+}
+
+}  // namespace peelray

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace peelray {
+
+namespace {
+
+/// Transforms normals: the cofactors of the 3×3 part are its inverse transpose times the determinant, and stay finite where
+/// it has no inverse (a mesh scaled flat).
+struct NormalTransform {
+    glm::dmat3 cofactors;
+    bool mirrors;
+
+    explicit NormalTransform(const glm::mat4& world) {
+        const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
+        cofactors = glm::dmat3(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+        mirrors = glm::dot(x, cofactors[0]) < 0;
+        if (mirrors) cofactors *= -1.0;
+    }
+
+    glm::vec3 operator()(const glm::vec3& normal) const {
+        const glm::dvec3 out = cofactors * glm::dvec3(normal);
+        const double length = glm::length(out);
+        if (length > 0 && std::isfinite(length)) return glm::vec3(out / length);
+        return glm::length(normal) > 0 ? glm::normalize(normal) : glm::vec3(0, 1, 0);
+    }
+};
+
+struct Totals {
+    uint64_t vertices = 0, triangles = 0;
+    bool colors = false;
+};
+
+Totals count(const Scene& scene) {
+    Totals totals;
+    for (const Node& node : scene.nodes) {
+        if (node.mesh < 0) continue;
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(node.mesh)].primitives) {
+            totals.vertices += primitive.positions.size();
+            totals.triangles += primitive.triangles.size();
+            totals.colors |= !primitive.colors.empty();
+        }
+    }
+    return totals;
+}
+
+void append_vertices(Geometry& out, const Primitive& primitive, const glm::mat4& world, const NormalTransform& to_normal,
+                     const Node& node, const Totals& totals) {
+    for (size_t i = 0; i < primitive.positions.size(); ++i) {
+        const glm::vec3 p = glm::vec3(world * glm::vec4(primitive.positions[i], 1));
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down", node.name, i);
+        out.positions.push_back(p);
+    }
+    for (const glm::vec3& normal : primitive.normals) out.normals.push_back(to_normal(normal));
+    if (primitive.uvs.empty()) out.uvs.resize(out.positions.size(), glm::vec2(0));
+    else out.uvs.insert(out.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
+    if (totals.colors && primitive.colors.empty()) out.colors.resize(out.positions.size(), glm::vec4(1));
+    else out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
+}
+
+void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first, bool mirrors) {
+    for (glm::uvec3 t : primitive.triangles) {
+        if (mirrors) std::swap(t.y, t.z);
+        t += first;
+        const glm::dvec3 a = out.positions[t.x], b = out.positions[t.y], c = out.positions[t.z];
+        if (glm::length(glm::cross(b - a, c - a)) == 0) ++out.zero_area;
+        for (int k = 0; k < 3; ++k) {
+            out.lower = glm::min(out.lower, out.positions[t[k]]);
+            out.upper = glm::max(out.upper, out.positions[t[k]]);
+        }
+        out.triangles.push_back(t);
+    }
+    out.materials.resize(out.triangles.size(), primitive.material);
+}
+
+}  // namespace
+
+Geometry flatten(const Scene& scene) {
+    const Totals totals = count(scene);
+    if (totals.triangles == 0) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
+    constexpr uint64_t limit = uint64_t(1) << 29;
+    if (totals.vertices > limit || totals.triangles > limit)
+        fail("{}: {} vertices and {} triangles with all instances, at most {} of each are supported; split the scene", scene.name, totals.vertices, totals.triangles, limit);
+    Geometry out;
+    out.positions.reserve(totals.vertices);
+    out.normals.reserve(totals.vertices);
+    out.uvs.reserve(totals.vertices);
+    if (totals.colors) out.colors.reserve(totals.vertices);
+    out.triangles.reserve(totals.triangles);
+    out.materials.reserve(totals.triangles);
+    out.lower = glm::vec3(INFINITY);
+    out.upper = glm::vec3(-INFINITY);
+    std::vector<glm::mat4> worlds;
+    worlds.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes) {
+        worlds.push_back(node.parent < 0 ? node.local : worlds[static_cast<size_t>(node.parent)] * node.local);
+        if (node.mesh < 0) continue;
+        const NormalTransform to_normal(worlds.back());
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(node.mesh)].primitives) {
+            const auto first = static_cast<uint32_t>(out.positions.size());
+            append_vertices(out, primitive, worlds.back(), to_normal, node, totals);
+            append_triangles(out, primitive, first, to_normal.mirrors);
+        }
+    }
+    return out;
+}
+
+Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
+    Camera camera;
+    camera.name = "framed";
+    camera.vertical_fov = glm::radians(40.f);
+    if (!(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z)) return camera;
+    const glm::vec3 half = 0.5f * upper - 0.5f * lower;
+    camera.look = lower + half;
+    const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.45f, 1.f));
+    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back)), up = glm::cross(back, right);
+    constexpr float margin = 1.05f;
+    const float tangent = std::tan(camera.vertical_fov / 2) / margin;
+    // The nearest eye on the line through the middle from which every corner lies inside the frame.
+    float distance = 1e-4f;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 p = half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const float needed = std::max(std::abs(glm::dot(p, up)), std::abs(glm::dot(p, right)) / aspect) / tangent;
+        distance = std::max(distance, glm::dot(p, back) + needed);
+    }
+    // A single point far from the origin needs a distance that its coordinates can still express.
+    const glm::vec3 magnitude = glm::abs(camera.look);
+    distance = std::max(distance, 1e-3f * std::max({magnitude.x, magnitude.y, magnitude.z}) * (half == glm::vec3(0) ? 1.f : 0.f));
+    camera.eye = camera.look + back * distance;
+    return camera;
+}
+
+}  // namespace peelray

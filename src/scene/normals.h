@@ -1,0 +1,22 @@
+// Normals where a file has none, and vertices shared where a file repeats them.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+/// One vertex per triangle corner with the triangle's own normal (what glTF asks for where normals are missing).
+void make_flat(Primitive& primitive);
+
+/// Normals from the adjacent triangles, weighted by the corner's angle; edges sharper than `crease` (radians) stay hard.
+/// Corners at the same position count as one vertex. Vertices are split where normals differ; triangles keep their order.
+void make_smooth(Primitive& primitive, float crease);
+
+/// Merges vertices that agree in every attribute. Triangles keep their order.
+void weld(Primitive& primitive);
+
+/// Makes every normal unit length; where a normal is zero or not finite, takes one from the adjacent triangles.
+/// Returns how many of those there were.
+size_t repair_normals(Primitive& primitive);
+
+}  // namespace peelray

@@ -1,0 +1,58 @@
+// Shapes and small helpers that the built-in scenes are made of. All shapes have unit normals and front faces outwards.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+Scene make_teapots();
+Scene make_glass();
+Scene make_tree();
+Scene make_blob(uint64_t triangles);
+
+/// Collects a scene: one node with one mesh of one primitive per object.
+class SceneBuilder {
+  public:
+    explicit SceneBuilder(const char* name) { scene_.name = name; }
+
+    uint32_t material(Material material);
+    void add(const char* name, Primitive shape, uint32_t material, const glm::mat4& transform = glm::mat4(1));
+    /// A texture of n×n tiles in two sRGB colours (0xBBGGRR), alternating in u, or in u and v.
+    int tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions);
+    void camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees);
+    Scene take() { return std::move(scene_); }
+
+  private:
+    Scene scene_;
+};
+
+Material matte(const char* name, const glm::vec3& color);
+Material metal(const char* name, const glm::vec3& color);
+
+/// A sphere as a subdivided cube (no poles, no slivers) with n×n squares a side.
+Primitive sphere(const glm::vec3& center, float radius, uint32_t n);
+/// A torus around the y axis.
+Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments, uint32_t tube_segments);
+/// A box with sharp edges.
+Primitive box(const glm::vec3& lower, const glm::vec3& upper);
+/// Two triangles: corner, corner + u, corner + u + v, corner + v; front towards u × v; uv from 0 to `repeat`.
+Primitive parallelogram(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, float repeat = 1);
+/// Newell's teapot: 32 bicubic patches, n×n squares each; y up, 3.15 high, standing on y = 0, the spout towards +x.
+Primitive teapot(uint32_t n);
+
+/// A small deterministic generator (the same numbers on every machine, unlike the standard distributions).
+class Random {
+  public:
+    explicit Random(uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 1) {}
+    /// Uniform in [0, 1).
+    float next();
+    float between(float low, float high) { return low + (high - low) * next(); }
+
+  private:
+    uint64_t state_;
+};
+
+}  // namespace peelray

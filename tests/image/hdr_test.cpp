@@ -1,0 +1,271 @@
+// Radiance and OpenEXR: what we write, what others write, and what is broken.
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+#include <ImfTiledOutputFile.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "image/image.h"
+#include "temp_folder.h"
+
+namespace peelray {
+namespace {
+
+using Hdr = TempFolder;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const float nan = std::numeric_limits<float>::quiet_NaN();
+
+Image pattern(uint32_t width, uint32_t height) {
+    Image image{width, height, {}};
+    for (uint32_t i = 0; i < width * height; ++i)
+        image.pixels.emplace_back(float(i) * 0.37f, 1e-3f * float(i % 13), 1000.0f / float(i + 1), 1);
+    return image;
+}
+
+void expect_close(const Image& a, const Image& b, float relative) {
+    ASSERT_EQ(a.width, b.width);
+    ASSERT_EQ(a.height, b.height);
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+        // RGBE shares one exponent, so the error is relative to the largest component.
+        const float scale = std::max({a.pixels[i].x, a.pixels[i].y, a.pixels[i].z});
+        for (int c = 0; c < 4; ++c)
+            ASSERT_NEAR(a.pixels[i][c], b.pixels[i][c], relative * scale + 1e-7f) << i << " " << c;
+    }
+}
+
+/// Writes float channels with any data window, scan lines or tiles.
+void write_exr(const std::filesystem::path& path, const Imath::Box2i& window, const std::vector<std::string>& names,
+               const std::vector<std::vector<float>>& channels, bool tiled, Imf::Compression compression) {
+    Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), window);
+    header.compression() = compression;
+    Imf::FrameBuffer buffer;
+    const size_t width = size_t(window.max.x - window.min.x + 1);
+    for (size_t i = 0; i < names.size(); ++i) {
+        header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
+        buffer.insert(names[i], Imf::Slice::Make(Imf::FLOAT, channels[i].data(), window, 4, 4 * width));
+    }
+    if (tiled) {
+        header.setTileDescription(Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS));
+        Imf::TiledOutputFile file(path.c_str(), header);
+        file.setFrameBuffer(buffer);
+        for (int level = 0; level < file.numLevels(); ++level)
+            file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+    } else {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(window.max.y - window.min.y + 1);
+    }
+}
+
+TEST_F(Hdr, RadianceKeepsEightBits) {
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 3u}, {8u, 1u}, {300u, 5u}}) {
+        const Image image = pattern(width, height);
+        write_hdr(folder / "a.hdr", image);
+        expect_close(image, read_hdr(folder / "a.hdr"), 1 / 128.0f);
+    }
+}
+
+TEST_F(Hdr, ExrFloatIsExactAndHalfNearlySo) {
+    Image image = pattern(31, 9);
+    write_hdr(folder / "half.EXR", image);
+    expect_close(image, read_hdr(folder / "half.EXR"), 1 / 2048.0f);
+    image.at(3, 4) = {1e30f, 1e-30f, 70000, 0.25f};
+    write_hdr(folder / "full.exr", image, true);
+    EXPECT_EQ(read_hdr(folder / "full.exr").pixels, image.pixels);
+    EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(Hdr, HalfClampsInsteadOfOverflowing) {
+    Image image{4, 1, {{65504, 65519, 65520, 0}, {1e30f, infinity, -1e30f, 1}, {0, -0.0f, 1e-9f, 1}, {1, 2, 3, 0.5f}}};
+    write_hdr(folder / "a.exr", image);
+    const Image read = read_hdr(folder / "a.exr");
+    EXPECT_EQ(read.pixels[0], glm::vec4(65504, 65504, 65504, 0));
+    EXPECT_EQ(read.pixels[1], glm::vec4(65504, 65504, 0, 1));
+    EXPECT_EQ(read.pixels[3], glm::vec4(1, 2, 3, 0.5f));
+}
+
+TEST_F(Hdr, RadianceTakesNoNonsense) {
+    write_hdr(folder / "a.hdr", Image{3, 1, {{nan, -1, 2, 1}, {infinity, 1, 1, 1}, {3e38f, 0, 0, 1}}});
+    const Image read = read_hdr(folder / "a.hdr");
+    EXPECT_NEAR(read.pixels[0].z, 2, 0.02f);
+    EXPECT_EQ(read.pixels[0].x, 0);
+    EXPECT_NEAR(read.pixels[1].x, 1e38f, 1e36f);
+    EXPECT_NEAR(read.pixels[2].x, 1e38f, 1e36f);
+}
+
+TEST_F(Hdr, ReadingSanitises) {
+    write_hdr(folder / "a.exr", Image{2, 1, {{nan, infinity, -infinity, nan}, {-1, 5, 1e30f, 1}}}, true);
+    const Image read = read_hdr(folder / "a.exr");
+    EXPECT_EQ(read.pixels[0], glm::vec4(0, 65504, 0, 0));
+    EXPECT_EQ(read.pixels[1], glm::vec4(0, 5, 1e30f, 1));
+}
+
+TEST_F(Hdr, ReadsExrWindowsTilesAndChannelNames) {
+    const std::vector<float> a = {1, 2, 3, 4, 5, 6}, b = {7, 8, 9, 10, 11, 12}, c = {13, 14, 15, 16, 17, 18};
+    for (const Imath::Box2i& window :
+         {Imath::Box2i({0, 0}, {2, 1}), Imath::Box2i({-5, -7}, {-3, -6}), Imath::Box2i({1000, 5000}, {1002, 5001})})
+        for (const bool tiled : {false, true})
+            for (const Imf::Compression compression :
+                 {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+                write_exr(folder / "rgb.exr", window, {"R", "G", "B", "Z"}, {a, b, c, a}, tiled, compression);
+                const Image rgb = read_hdr(folder / "rgb.exr");
+                ASSERT_EQ(rgb.width, 3u);
+                ASSERT_EQ(rgb.height, 2u);
+                EXPECT_EQ(rgb.at(1, 1), glm::vec4(5, 11, 17, 1));
+                write_exr(folder / "layer.exr", window, {"l.R", "l.G", "l.B", "l.A"}, {a, b, c, b}, tiled, compression);
+                EXPECT_EQ(read_hdr(folder / "layer.exr").at(2, 0), glm::vec4(3, 9, 15, 9));
+                write_exr(folder / "y.exr", window, {"Y", "A"}, {b, a}, tiled, compression);
+                EXPECT_EQ(read_hdr(folder / "y.exr").at(0, 1), glm::vec4(10, 10, 10, 4));
+                write_exr(folder / "z.exr", window, {"depth"}, {c}, tiled, compression);
+                EXPECT_EQ(read_hdr(folder / "z.exr").at(2, 1), glm::vec4(18, 18, 18, 1));
+            }
+}
+
+TEST_F(Hdr, ReadsLuminanceAndChroma) {
+    constexpr int size = 32;
+    const std::vector<Imf::Rgba> pixels(size * size, Imf::Rgba(0.25f, 0.5f, 0.75f));
+    {
+        Imf::RgbaOutputFile file((folder / "yc.exr").c_str(), size, size, Imf::WRITE_YC);
+        file.setFrameBuffer(pixels.data(), 1, size);
+        file.writePixels(size);
+    }
+    const Image read = read_hdr(folder / "yc.exr");
+    ASSERT_EQ(read.pixels.size(), pixels.size());
+    for (const glm::vec4& pixel : read.pixels) {
+        EXPECT_NEAR(pixel.x, 0.25f, 0.01f);
+        EXPECT_NEAR(pixel.y, 0.5f, 0.01f);
+        EXPECT_NEAR(pixel.z, 0.75f, 0.01f);
+        EXPECT_EQ(pixel.w, 1);
+    }
+}
+
+TEST_F(Hdr, RefusesDeepAndColourlessExrs) {
+    const std::vector<float> a = {1, 2};
+    write_exr(folder / "a.exr", {{0, 0}, {1, 0}}, {"N.x", "N.y"}, {a, a}, false, Imf::ZIP_COMPRESSION);
+    expect_error([&] { read_hdr(folder / "a.exr"); }, "N.x, N.y");
+    Imf::Header header(1, 1);
+    header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+    header.setType(Imf::DEEPSCANLINE);
+    header.compression() = Imf::ZIPS_COMPRESSION;
+    {
+        float sample = 1;
+        float* samples = &sample;
+        unsigned count = 1;
+        Imf::DeepScanLineOutputFile file((folder / "deep.exr").c_str(), header);
+        Imf::DeepFrameBuffer buffer;
+        buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(&count), 4, 4));
+        buffer.insert("R",
+                      Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(&samples), sizeof samples, sizeof samples, 4));
+        file.setFrameBuffer(buffer);
+        file.writePixels(1);
+    }
+    expect_error([&] { read_hdr(folder / "deep.exr"); }, "deep");
+}
+
+TEST_F(Hdr, RefusesWhatIsNeitherFormat) {
+    expect_error([&] { read_hdr(folder / "none.exr"); }, "No such file");
+    expect_error([&] { read_hdr(folder); }, "Is a directory");
+    expect_error([&] { read_hdr(put("a.exr", "")); }, "empty");
+    expect_error([&] { read_hdr(put("a.exr", "\x89PNG\r\n")); }, "neither");
+    expect_error([&] { write_hdr(folder / "a.png", pattern(1, 1)); }, "'.png'");
+    expect_error([&] { write_hdr(folder / "a.exr", Image{}); }, "empty");
+    expect_error([&] { write_hdr(folder / "no/a.hdr", pattern(1, 1)); }, "no folder");
+}
+
+TEST_F(Hdr, RefusesTruncatedFiles) {
+    for (const char* name : {"a.exr", "a.hdr"}) {
+        write_hdr(folder / name, pattern(50, 20));
+        const std::string whole = get(folder / name);
+        for (size_t length = 1; length < whole.size(); length += length < 600 ? 7 : 101)
+            expect_error([&] { read_hdr(put("cut", whole.substr(0, length))); }, "cannot read");
+        expect_error([&] { read_hdr(put("cut", whole.substr(0, whole.size() - 1))); }, "cannot read");
+    }
+}
+
+TEST_F(Hdr, SurvivesFlippedBytes) {
+    for (const char* name : {"a.exr", "a.hdr"}) {
+        write_hdr(folder / name, pattern(16, 16));
+        const std::string whole = get(folder / name);
+        for (size_t i = 0; i < whole.size(); ++i) {
+            std::string bytes = whole;
+            bytes[i] = char(bytes[i] ^ (1 + i * 37 % 255));
+            try {
+                read_hdr(put("flipped", bytes));
+            } catch (const Error& error) {
+                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            }
+        }
+    }
+}
+
+TEST_F(Hdr, RefusesHugeSizesBeforeReadingThem) {
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 65536 +X 65536\n")); }, "65536 x 65536");
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 99999999999\n")); }, "99999999999 x 1");
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 99999999999999999999\n")); }, "size line");
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 0 +X 4\n")); }, "empty");
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 16384 +X 16384\n")); }, "row 1 of 16384");
+    write_hdr(folder / "a.exr", pattern(4, 4));
+    std::string exr = get(folder / "a.exr");
+    const size_t window = exr.find("dataWindow") + 11 + 6 + 4;  // the name, the type "box2i", the size
+    const int32_t corners[4] = {0, 0, 0x3fffff, 0x3fffff};
+    std::memcpy(&exr[window], corners, sizeof corners);
+    expect_error([&] { read_hdr(put("b.exr", exr)); }, "cannot read");
+}
+
+TEST_F(Hdr, ReadsRadianceByHand) {
+    const std::string head = "#?RGBE\n# a comment\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
+    const auto pixel = [](int r, int g, int b, int e) { return std::string{char(r), char(g), char(b), char(e)}; };
+    const Image flat = read_hdr(put("a.hdr", head + "-Y 1 +X 3\n" + pixel(128, 64, 0, 129) + pixel(1, 1, 1, 2)));
+    EXPECT_EQ(flat.pixels, std::vector<glm::vec4>(3, {1, 0.5f, 0, 1}));
+    std::string runs = pixel(2, 2, 0, 9);
+    for (const int value : {128, 64, 32, 130}) runs += pixel(128 + 8, value, 1, value);
+    const Image coded = read_hdr(put("a.hdr", head + "-Y 1 +X 9\r\n" + runs));
+    EXPECT_EQ(coded.pixels, std::vector<glm::vec4>(9, {2, 1, 0.5f, 1}));
+    std::string zero_run = runs;
+    zero_run[6] = 0;
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 9\n" + zero_run)); }, "illegal length");
+    expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 3\n" + pixel(1, 1, 1, 2))); }, "illegal length");
+    expect_error([&] { read_hdr(put("a.hdr", head + "+X 3 -Y 1\n")); }, "size line");
+    expect_error([&] { read_hdr(put("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n")); }, "xyze");
+}
+
+TEST_F(Hdr, WritesFloatChannels) {
+    write_exr_channels(folder / "aov.exr", 3, 2, {"Z", "id"},
+                       {{1, 2, infinity, 4, 5, 1e30f}, {0, 1, 2, 3, 4, 16777215}});
+    Imf::InputFile file((folder / "aov.exr").c_str());
+    ASSERT_NE(file.header().channels().findChannel("Z"), nullptr);
+    EXPECT_EQ(file.header().channels().findChannel("id")->type, Imf::FLOAT);
+    std::vector<float> z(6), id(6);
+    Imf::FrameBuffer buffer;
+    buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, z.data(), file.header().dataWindow(), 4, 12));
+    buffer.insert("id", Imf::Slice::Make(Imf::FLOAT, id.data(), file.header().dataWindow(), 4, 12));
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, 1);
+    EXPECT_EQ(z, (std::vector<float>{1, 2, infinity, 4, 5, 1e30f}));
+    EXPECT_EQ(id[5], 16777215);
+    expect_error([&] { write_exr_channels(folder / "b.exr", 0, 2, {"Z"}, {{}}); }, "empty");
+    expect_error([&] { write_exr_channels("/proc/b.exr", 1, 1, {"Z"}, {{1}}); }, "/proc/b.exr");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Hdr, ReadsOtherPeoplesFiles) {
+    const std::filesystem::path env = std::filesystem::path(PEELRAY_MODELS) / "env";
+    if (!std::filesystem::exists(env)) GTEST_SKIP() << env << " is not here";
+    const Image radiance = read_hdr(env / "spiaggia_di_mondello_1k.hdr");
+    EXPECT_EQ(radiance.width, 2 * radiance.height);
+    EXPECT_GT(read_hdr(env / "exr-hdr.exr").pixels.size(), 0u);
+}
+
+}  // namespace
+}  // namespace peelray
