@@ -12,7 +12,7 @@ BUFFER(, 4, vec4, picture)
 #include "camera.glsl"
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i >= params.capacity || queue[QUEUE_OVERFLOW] != 0u) return;
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;

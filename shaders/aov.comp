@@ -15,7 +15,7 @@ BUFFER(writeonly, 13, vec4, aovs)
 #include "camera.glsl"
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i >= params.capacity) return;
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;

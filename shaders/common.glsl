@@ -13,4 +13,9 @@
 #define PARAMS(type) \
     layout(push_constant, scalar) uniform params_block { type params; };
 
+// Workgroups come in rows of DISPATCH_ROW, for a device may run no more than 65535 in one direction (see groups_for).
+#define DISPATCH_ROW 32768u
+#define GROUP_INDEX (gl_WorkGroupID.y * DISPATCH_ROW + gl_WorkGroupID.x)
+#define GLOBAL_INDEX (GROUP_INDEX * gl_WorkGroupSize.x + gl_LocalInvocationIndex)
+
 #endif

@@ -9,7 +9,7 @@ BUFFER(readonly, 1, PathNode, next_nodes)
 BUFFER(readonly, 2, uint, queue)
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i >= min(params.capacity, queue[params.level])) return;
     const PathNode node = nodes[i];
     vec3 radiance = node.radiance;

@@ -5,6 +5,7 @@
 #include "common.glsl"
 #include "params.h"
 #include "peelray/peelray_sample.glsl"
+#include "peelray/precise.glsl"
 
 // Filed this far beyond its own extent, in voxels, so that rounding (coordinates up to 2048) never loses a sample; half of
 // the traversal's slack.
@@ -26,12 +27,10 @@ struct LdcTriangle {
 vec3 ldcToLdi(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
 uvec3 ldcFromLdi(uvec3 p, uint axis) { return axis == 0u ? p.zxy : (axis == 1u ? p.yzx : p); }
 
-/// a*b - c*d with one rounding's error (Kahan), so that the normals of needles keep their direction.
+/// a*b - c*d with one rounding's error, so that the normals of needles keep their direction.
 float ldcDifference(float a, float b, float c, float d) {
-    precise float cd = c * d;
-    precise float error = fma(-c, d, cd);
-    precise float difference = fma(a, b, -cd);
-    return difference + error;
+    const vec2 r = peelrayAdd(peelrayTwoProduct(a, b), -peelrayTwoProduct(c, d));
+    return r.x + r.y;
 }
 
 vec3 ldcNormal(vec3 a, vec3 b, vec3 c, float inv_voxel) {

@@ -12,14 +12,13 @@ shared uvec2 partial[64];
 void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint count = min(counters[0].nodes, params.node_capacity);
-    for (uint node = gl_WorkGroupID.x; node < count; node += params.workers) {
-        const uint samples = voxel_counts[node * 64u + lane];
-        partial[lane] = uvec2(samples, samples != 0u ? 1u : 0u);
-        for (uint step = 32u; step > 0u; step >>= 1u) {
-            barrier();
-            if (lane < step) partial[lane] += partial[lane + step];
-        }
-        if (lane == 0u) sums[node] = partial[0];
+    const uint node = GROUP_INDEX;
+    if (node >= count) return;
+    const uint samples = voxel_counts[node * 64u + lane];
+    partial[lane] = uvec2(samples, samples != 0u ? 1u : 0u);
+    for (uint step = 32u; step > 0u; step >>= 1u) {
         barrier();
+        if (lane < step) partial[lane] += partial[lane + step];
     }
+    if (lane == 0u) sums[node] = partial[0];
 }

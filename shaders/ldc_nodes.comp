@@ -13,18 +13,17 @@ BUFFER(writeonly, 5, uint, node_cells)
 void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint count = min(counters[0].tops, params.top_capacity);
-    for (uint i = gl_WorkGroupID.x; i < count; i += params.workers) {
-        const uint top = top_cells[i];
-        const uvec2 mask = node_masks[top];
-        uint entry;
-        if (ldcMaskBit(mask, lane)) {
-            const uint node = sums[top].y + ldcMaskRank(mask, lane);
-            entry = 0x80000000u | node;
-            const uvec3 cell = ldcTopCell(top, params.grid.dims) * 4u + ldcCell64(lane);
-            if (node < params.node_capacity) node_cells[node] = cell.x | cell.y << 10u | cell.z << 20u;
-        } else {
-            entry = ldcGrowBox(mask, lane);
-        }
-        node_table[i * 64u + lane] = entry;
+    if (GROUP_INDEX >= count) return;
+    const uint top = top_cells[GROUP_INDEX];
+    const uvec2 mask = node_masks[top];
+    uint entry;
+    if (ldcMaskBit(mask, lane)) {
+        const uint node = sums[top].y + ldcMaskRank(mask, lane);
+        entry = 0x80000000u | node;
+        const uvec3 cell = ldcTopCell(top, params.grid.dims) * 4u + ldcCell64(lane);
+        if (node < params.node_capacity) node_cells[node] = cell.x | cell.y << 10u | cell.z << 20u;
+    } else {
+        entry = ldcGrowBox(mask, lane);
     }
+    node_table[GROUP_INDEX * 64u + lane] = entry;
 }

@@ -15,7 +15,7 @@ BUFFER(writeonly, 5, uint, big_triangles)
 bool finite(vec3 p) { return abs(p.x) < 1e30 && abs(p.y) < 1e30 && abs(p.z) < 1e30; }
 
 void main() {
-    const uint id = gl_GlobalInvocationID.x;
+    const uint id = GLOBAL_INDEX;
     const bool planar = params.planar != 0u;
     bool valid = id < params.triangles;
     vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);

@@ -16,26 +16,26 @@ BUFFER(readonly, 5, uvec2, tiles)
 void main() {
     const bool planar = params.planar != 0u;
     const uint tile_count = min(counters[0].tiles, params.tile_capacity);
-    for (uint i = gl_WorkGroupID.x; i < tile_count; i += params.workers) {
-        const uint id = tiles[i].x;
-        const LdcTriangle t = bigTriangle(id);
-        const vec3 reach = ldcReach(t);
-        ivec2 lo, hi;
-        ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
-        const ivec2 corner = ivec2(tiles[i].y & 0xffffu, tiles[i].y >> 16u) * 16;
-        uint count = 0u, covered = 0u;
-        for (uint k = 0u; k < 4u; k++) {
-            const uint j = k * 64u + gl_LocalInvocationIndex;
-            const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
-            if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, planar)) continue;
-            covered |= 1u << k;
-            count += ldcEmitPixel(t, pixel, id, false, 0u);
-        }
-        uint position = ldcReserve(count);
-        for (uint k = 0u; k < 4u; k++) {
-            if ((covered >> k & 1u) == 0u) continue;
-            const uint j = k * 64u + gl_LocalInvocationIndex;
-            position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, true, position);
-        }
+    if (GROUP_INDEX >= tile_count) return;
+    const uvec2 tile = tiles[GROUP_INDEX];
+    const uint id = tile.x;
+    const LdcTriangle t = bigTriangle(id);
+    const vec3 reach = ldcReach(t);
+    ivec2 lo, hi;
+    ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
+    const ivec2 corner = ivec2(tile.y & 0xffffu, tile.y >> 16u) * 16;
+    uint count = 0u, covered = 0u;
+    for (uint k = 0u; k < 4u; k++) {
+        const uint j = k * 64u + gl_LocalInvocationIndex;
+        const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
+        if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, planar)) continue;
+        covered |= 1u << k;
+        count += ldcEmitPixel(t, pixel, id, false, 0u);
+    }
+    uint position = ldcReserve(count);
+    for (uint k = 0u; k < 4u; k++) {
+        if ((covered >> k & 1u) == 0u) continue;
+        const uint j = k * 64u + gl_LocalInvocationIndex;
+        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, true, position);
     }
 }

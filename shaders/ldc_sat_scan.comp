@@ -11,7 +11,7 @@ void main() {
     const uvec3 tops = params.grid.dims >> 4u;
     const uvec3 strides = uvec3(1u, tops.x, tops.x * tops.y);
     const uint axis = params.axis, other1 = (axis + 1u) % 3u, other2 = (axis + 2u) % 3u;
-    const uint line = gl_GlobalInvocationID.x;
+    const uint line = GLOBAL_INDEX;
     if (line >= tops[other1] * tops[other2]) return;
     const uint first = (line % tops[other1]) * strides[other1] + (line / tops[other1]) * strides[other2];
     uint sum = 0u;

@@ -11,6 +11,7 @@ BUFFER(writeonly, 3, uint, unsorted_ids)
 void main() {
     if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
     const uint count = min(counters[0].fragments, params.fragment_capacity);
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += params.workers * 128u)
-        unsorted_ids[(voxel_table[fragments[i].top] & 0x7fffffffu) + fragments[i].local] = fragments[i].id;
+    const uint i = GLOBAL_INDEX;
+    if (i >= count) return;
+    unsorted_ids[(voxel_table[fragments[i].top] & 0x7fffffffu) + fragments[i].local] = fragments[i].id;
 }

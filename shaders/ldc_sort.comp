@@ -19,13 +19,13 @@ BUFFER(writeonly, 9, uint, sample_ids)
 void main() {
     if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
     const uint count = min(counters[0].fragments, params.fragment_capacity);
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += params.workers * 128u) {
-        const uint voxel = fragments[i].top, id = fragments[i].id;
-        const uint length = voxel_counts[voxel];
-        if (length > LDC_LONG_LIST) continue;
-        const uint start = voxel_table[voxel] & 0x7fffffffu;
-        uint rank = 0u;
-        for (uint j = start; j < start + length; j++) rank += unsorted_ids[j] < id ? 1u : 0u;
-        placeSample(start + rank, id, voxel, rank + 1u == length);
-    }
+    const uint i = GLOBAL_INDEX;
+    if (i >= count) return;
+    const uint voxel = fragments[i].top, id = fragments[i].id;
+    const uint length = voxel_counts[voxel];
+    if (length > LDC_LONG_LIST) return;
+    const uint start = voxel_table[voxel] & 0x7fffffffu;
+    uint rank = 0u;
+    for (uint j = start; j < start + length; j++) rank += unsorted_ids[j] < id ? 1u : 0u;
+    placeSample(start + rank, id, voxel, rank + 1u == length);
 }

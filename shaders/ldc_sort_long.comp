@@ -1,6 +1,7 @@
 // Sorts the long lists by id: one workgroup per list, a stable radix sort with 8-bit digits, linear in the list's length.
 // Four rounds go unsorted_ids -> sample_ids -> ... and end in unsorted_ids; then the samples are written.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #include "ldc_common.glsl"
 layout(local_size_x = 256) in;
 PARAMS(LdcParams)
@@ -51,10 +52,13 @@ void sortRound(uint start, uint length, uint shift, bool forward) {
         barrier();
         uint before = 0u, all = 0u;
         if (lane < batch)
-            for (uint j = 0u; j < batch; j++) {
-                const bool same = digits[j] == digit;
-                before += same && j < lane ? 1u : 0u;
-                all += same ? 1u : 0u;
+            // Sixteen at a time: a software device may bound the loop iterations of an invocation (docs/performance.md).
+            for (uint j = 0u; j < batch; j += 16u) {
+                [[unroll]] for (uint k = 0u; k < 16u; k++) {
+                    const bool same = j + k < batch && digits[j + k] == digit;
+                    before += same && j + k < lane ? 1u : 0u;
+                    all += same ? 1u : 0u;
+                }
             }
         if (lane < batch) {
             const uint to = start + heads[digit] + before;
@@ -76,11 +80,10 @@ void main() {
     // Fragments that found no room are missing from the lists: everything is redone.
     if (counters[0].fragments > params.fragment_capacity) return;
     const uint count = min(counters[0].long_lists, params.long_capacity);
-    for (uint i = gl_WorkGroupID.x; i < count; i += params.workers) {
-        const uint voxel = long_lists[i], length = voxel_counts[voxel];
-        const uint start = voxel_table[voxel] & 0x7fffffffu;
-        for (uint digit = 0u; digit < 4u; digit++) sortRound(start, length, digit * 8u, (digit & 1u) == 0u);
-        for (uint j = gl_LocalInvocationIndex; j < length; j += 256u)
-            placeSample(start + j, unsorted_ids[start + j], voxel, j + 1u == length);
-    }
+    if (GROUP_INDEX >= count) return;
+    const uint voxel = long_lists[GROUP_INDEX], length = voxel_counts[voxel];
+    const uint start = voxel_table[voxel] & 0x7fffffffu;
+    for (uint digit = 0u; digit < 4u; digit++) sortRound(start, length, digit * 8u, (digit & 1u) == 0u);
+    for (uint j = gl_LocalInvocationIndex; j < length; j += 256u)
+        placeSample(start + j, unsorted_ids[start + j], voxel, j + 1u == length);
 }

@@ -14,19 +14,18 @@ BUFFER(writeonly, 4, uvec2, tiles)
 
 void main() {
     const uint count = min(counters[0].big, params.big_capacity);
-    for (uint i = gl_WorkGroupID.x; i < count; i += params.workers) {
-        const uint id = big_triangles[i];
-        const LdcTriangle t = bigTriangle(id);
-        const vec3 reach = ldcReach(t);
-        ivec2 lo, hi;
-        ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
-        const uvec2 first = uvec2(lo) >> 4u, size = (uvec2(hi) >> 4u) - first + 1u;
-        for (uint j = gl_LocalInvocationIndex; j < size.x * size.y; j += gl_WorkGroupSize.x) {
-            const uvec2 tile = first + uvec2(j % size.x, j / size.x);
-            // Half a tile and a pixel: never tighter than the test of the pixels themselves.
-            if (any(lessThan(ldcEdges(t, vec2(tile) * 16.0 + 8.0), -8.5 * reach))) continue;
-            const uint slot = atomicAdd(counters[0].tiles, 1u);
-            if (slot < params.tile_capacity) tiles[slot] = uvec2(id, tile.x | tile.y << 16u);
-        }
+    if (GROUP_INDEX >= count) return;
+    const uint id = big_triangles[GROUP_INDEX];
+    const LdcTriangle t = bigTriangle(id);
+    const vec3 reach = ldcReach(t);
+    ivec2 lo, hi;
+    ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
+    const uvec2 first = uvec2(lo) >> 4u, size = (uvec2(hi) >> 4u) - first + 1u;
+    for (uint j = gl_LocalInvocationIndex; j < size.x * size.y; j += gl_WorkGroupSize.x) {
+        const uvec2 tile = first + uvec2(j % size.x, j / size.x);
+        // Half a tile and a pixel: never tighter than the test of the pixels themselves.
+        if (any(lessThan(ldcEdges(t, vec2(tile) * 16.0 + 8.0), -8.51 * reach))) continue;
+        const uint slot = atomicAdd(counters[0].tiles, 1u);
+        if (slot < params.tile_capacity) tiles[slot] = uvec2(id, tile.x | tile.y << 16u);
     }
 }

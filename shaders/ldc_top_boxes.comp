@@ -22,7 +22,7 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 
 void main() {
     const ivec3 tops = ivec3(params.grid.dims >> 4u);
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i >= uint(tops.x * tops.y * tops.z) || node_masks[i] != uvec2(0)) return;
     ivec3 lo = ivec3(ldcTopCell(i, params.grid.dims)), hi = lo;
     int steps[6] = int[](1, 1, 1, 1, 1, 1);

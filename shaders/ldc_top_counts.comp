@@ -7,7 +7,7 @@ BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(writeonly, 1, uvec2, sums)
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     const uvec3 tops = params.grid.dims >> 4u;
     if (i >= tops.x * tops.y * tops.z) return;
     const uint nodes = ldcMaskCount(node_masks[i]);

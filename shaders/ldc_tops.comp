@@ -10,7 +10,7 @@ BUFFER(writeonly, 3, uint, top_cells)
 BUFFER(, 4, LdcCounters, counters)
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     const uvec3 tops = params.grid.dims >> 4u;
     const uint count = tops.x * tops.y * tops.z;
     if (i >= count) return;

@@ -30,10 +30,9 @@ struct LdcParams {
     uint top_capacity;        ///< occupied 16x16x16 cells that have room
     uint node_capacity;       ///< occupied 4x4x4 nodes that have room
     uint long_capacity;       ///< entries of the queue of long lists
-    uint workers;             ///< workgroups of the passes that loop over a count known only on the GPU
     uint axis;                ///< of ldc_sat_scan
 };
-SHARED_SIZE(LdcParams, 72);
+SHARED_SIZE(LdcParams, 68);
 
 /// Counted on the GPU while building; whatever exceeds a capacity makes the host grow it and build again.
 struct LdcCounters {
@@ -49,6 +48,15 @@ struct LdcCounters {
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
 };
 SHARED_SIZE(LdcCounters, 40);
+
+/// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
+#define LDC_GROUPS_BIG 0u
+#define LDC_GROUPS_TILES 1u
+#define LDC_GROUPS_TOPS 2u
+#define LDC_GROUPS_NODES 3u
+#define LDC_GROUPS_FRAGMENTS 4u
+#define LDC_GROUPS_LONG 5u
+#define LDC_GROUPS 6u
 
 /// One triangle's crossing of one voxel, before it is sorted into its list.
 struct LdcFragment {
@@ -89,13 +97,12 @@ SHARED_SIZE(Hit, 16);
 
 struct TraceParams {
     CubeGrid grid;
-    uint first;     ///< first ray of this dispatch
     uint count;     ///< rays in the queue; with `counted`: room in the queue
     uint counted;   ///< 1: the count is queue[counter]
     uint counter;
     uint skips;     ///< 1: skip[i] is a triangle that ray i must not hit
 };
-SHARED_SIZE(TraceParams, 52);
+SHARED_SIZE(TraceParams, 48);
 
 // --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
 

@@ -16,7 +16,7 @@ BUFFER(writeonly, 7, uint, queue)
 #include "camera.glsl"
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i == 0u) queue[0] = params.capacity;
     if (i >= params.capacity) return;
     const uvec2 pixel = recordPixel(i, params.first_row);
@@ -31,7 +31,10 @@ void main() {
         const vec3 a = positions[corners.x] - ray.origin, b = positions[corners.y] - ray.origin, c = positions[corners.z] - ray.origin;
         float t;
         vec2 uv;
-        if (!peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv)) {
+        uint found = peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv);
+        if (found == PEELRAY_UNCERTAIN)
+            found = peelrayIntersectPrecise(vec3(0), ray.direction, a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
+        if (found == PEELRAY_OUTSIDE) {
             // The rasteriser snaps corners to a 256th of a pixel: this ray just misses. The nearest point of the triangle's
             // plane stands in, moved back into the triangle.
             const vec3 n = cross(b - a, c - a);

@@ -7,4 +7,7 @@ PARAMS(LevelParams)
 BUFFER(readonly, 0, uint, queue)
 BUFFER(writeonly, 1, uvec3, groups)
 
-void main() { groups[params.level] = uvec3((min(params.capacity, queue[params.level]) + 63u) / 64u, 1u, 1u); }
+void main() { 
+    const uint count = (min(params.capacity, queue[params.level]) + 63u) / 64u;
+    groups[params.level] = uvec3(min(count, DISPATCH_ROW), (count + DISPATCH_ROW - 1u) / DISPATCH_ROW, 1u);
+}

@@ -13,7 +13,7 @@ shared uvec2 partial[256];
 
 void main() {
     const uint lane = gl_LocalInvocationIndex;
-    const uint count = scanCount(), first = gl_WorkGroupID.x * SCAN_BLOCK + lane * 4u;
+    const uint count = scanCount(), first = GROUP_INDEX * SCAN_BLOCK + lane * 4u;
     uvec2 values[4];
     uvec2 sum = uvec2(0);
     for (uint i = 0u; i < 4u; i++) {
@@ -28,7 +28,7 @@ void main() {
         partial[lane] += other;
         barrier();
     }
-    uvec2 before = block_sums[gl_WorkGroupID.x] + partial[lane] - sum;
+    uvec2 before = block_sums[GROUP_INDEX] + partial[lane] - sum;
     for (uint i = 0u; i < 4u; i++) {
         if (first + i < count) sums[first + i] = before;
         before += values[i];

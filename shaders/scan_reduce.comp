@@ -12,7 +12,7 @@ BUFFER(writeonly, 2, uvec2, block_sums)
 shared uvec2 partial[256];
 
 void main() {
-    const uint count = scanCount(), first = gl_WorkGroupID.x * SCAN_BLOCK + gl_LocalInvocationIndex * 4u;
+    const uint count = scanCount(), first = GROUP_INDEX * SCAN_BLOCK + gl_LocalInvocationIndex * 4u;
     uvec2 sum = uvec2(0);
     for (uint i = first; i < first + 4u; i++) sum += i < count ? sums[i] : uvec2(0);
     partial[gl_LocalInvocationIndex] = sum;
@@ -20,5 +20,5 @@ void main() {
         barrier();
         if (gl_LocalInvocationIndex < step) partial[gl_LocalInvocationIndex] += partial[gl_LocalInvocationIndex + step];
     }
-    if (gl_LocalInvocationIndex == 0u) block_sums[gl_WorkGroupID.x] = partial[0];
+    if (gl_LocalInvocationIndex == 0u) block_sums[GROUP_INDEX] = partial[0];
 }

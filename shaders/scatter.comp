@@ -121,7 +121,7 @@ void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weig
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationIndex;
+    const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
     if (lane < 2u) group_counts[lane] = 0u;
     barrier();
     const bool valid = i < min(params.capacity, queue[params.level]);

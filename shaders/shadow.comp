@@ -122,7 +122,7 @@ vec3 lightSurface(Surface s, uint triangle, vec3 view, uint record, inout uint s
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (gl_LocalInvocationIndex == 0u) group_rays = group_ambient = 0u;
     barrier();
     uint shadow_rays = 0u, ambient_rays = 0u;

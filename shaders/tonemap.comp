@@ -9,7 +9,7 @@ BUFFER(readonly, 0, vec4, picture)
 BUFFER(writeonly, 1, uint, encoded)
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     if (i >= params.pixels) return;
     vec3 color = picture[i].rgb * params.scale;
     if (params.curve == 1u) color = tonemapAces(color);

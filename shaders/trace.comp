@@ -14,7 +14,7 @@ BUFFER(writeonly, 10, Hit, hits)
 #include "peelray/peelray.glsl"
 
 void main() {
-    const uint i = params.first + gl_GlobalInvocationID.x;
+    const uint i = GLOBAL_INDEX;
     const uint count = params.counted != 0u ? min(params.count, queue[params.counter]) : params.count;
     if (i >= count) return;
     const Ray ray = rays[i];

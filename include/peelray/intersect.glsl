@@ -2,9 +2,50 @@
 #ifndef PEELRAY_INTERSECT_GLSL
 #define PEELRAY_INTERSECT_GLSL
 
-/// Ray against triangle, watertight: an edge is seen the same way from both of its triangles (Woop, Benthin, Wald: Watertight
-/// Ray/Triangle Intersection, JCGT 2013). `origin` and corners relative to one point near all of them.
-bool peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+#include "peelray/precise.glsl"
+
+/// a*b - c*d
+vec2 peelrayMinor(vec2 a, vec2 b, vec2 c, vec2 d) { return peelrayAdd(peelrayMultiply(a, b), -peelrayMultiply(c, d)); }
+/// The triple product d . (p x q): twice the signed area between a ray of direction `d` and the edge from q to p.
+vec2 peelrayTriple(vec3 d, vec2 px, vec2 py, vec2 pz, vec2 qx, vec2 qy, vec2 qz) {
+    const vec2 x = peelrayMultiply(vec2(d.x, 0), peelrayMinor(py, qz, pz, qy));
+    const vec2 y = peelrayMultiply(vec2(d.y, 0), peelrayMinor(pz, qx, px, qz));
+    const vec2 z = peelrayMultiply(vec2(d.z, 0), peelrayMinor(px, qy, py, qx));
+    return peelrayAdd(peelrayAdd(x, y), z);
+}
+
+/// Is the point where the edges' areas are `edges` inside? Edges count as inside, so that no ray slips between triangles.
+bool peelrayInside(vec3 edges) { return all(greaterThanEqual(edges, vec3(0))) || all(lessThanEqual(edges, vec3(0))); }
+
+/// Ray against triangle with twice the precision; arguments as they are in the world.
+bool peelrayIntersectPrecise(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+    const vec2 ax = peelrayTwoSum(a.x, -origin.x), ay = peelrayTwoSum(a.y, -origin.y), az = peelrayTwoSum(a.z, -origin.z);
+    const vec2 bx = peelrayTwoSum(b.x, -origin.x), by = peelrayTwoSum(b.y, -origin.y), bz = peelrayTwoSum(b.z, -origin.z);
+    const vec2 cx = peelrayTwoSum(c.x, -origin.x), cy = peelrayTwoSum(c.y, -origin.y), cz = peelrayTwoSum(c.z, -origin.z);
+    const vec2 u = peelrayTriple(direction, cx, cy, cz, bx, by, bz);
+    const vec2 v = peelrayTriple(direction, ax, ay, az, cx, cy, cz);
+    const vec2 w = peelrayTriple(direction, bx, by, bz, ax, ay, az);
+    const vec3 edges = vec3(u.x, v.x, w.x);
+    const float det = edges.x + edges.y + edges.z;
+    t = 0.0;
+    uv = vec2(0);
+    if (!peelrayInside(edges) || det == 0.0) return false;
+    const vec3 weights = edges / det;
+    // Along the largest component of the direction: the weights are exact enough, and so is the sum of the corners.
+    const vec3 size = abs(direction);
+    const uint axis = size.x >= size.y && size.x >= size.z ? 0u : (size.y >= size.z ? 1u : 2u);
+    const vec3 along = axis == 0u ? vec3(ax.x, bx.x, cx.x) : (axis == 1u ? vec3(ay.x, by.x, cy.x) : vec3(az.x, bz.x, cz.x));
+    t = dot(weights, along) / direction[axis];
+    uv = weights.yz;
+    return true;
+}
+
+/// What peelrayIntersect found.
+const uint PEELRAY_OUTSIDE = 0u, PEELRAY_INSIDE = 1u, PEELRAY_UNCERTAIN = 2u;
+
+/// Ray against triangle in single precision (Woop, Benthin, Wald: Watertight Ray/Triangle Intersection, JCGT 2013); `origin` and
+/// corners relative to one point near all of them. PEELRAY_UNCERTAIN where rounding could decide: ask peelrayIntersectPrecise.
+uint peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
     const vec3 size = abs(direction);
     const bool x_largest = size.x >= size.y && size.x >= size.z;
     const bool y_largest = !x_largest && size.y >= size.z;
@@ -20,16 +61,23 @@ bool peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out f
     precise vec2 p = A.xy - shear * A.z;
     precise vec2 q = B.xy - shear * B.z;
     precise vec2 r = C.xy - shear * C.z;
-    precise float u = r.x * q.y - r.y * q.x;
-    precise float v = p.x * r.y - p.y * r.x;
-    precise float w = q.x * p.y - q.y * p.x;
-    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
-    const float det = u + v + w;
-    if (det == 0.0) return false;
-    const float inv = 1.0 / det;
-    t = (u * A.z + v * B.z + w * C.z) * inv * sz;
-    uv = vec2(v, w) * inv;
-    return !isinf(inv);
+    precise vec3 edges = vec3(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);
+    t = 0.0;
+    uv = vec2(0);
+    // Corners are off by a few roundings of their coordinates, areas by that times the triangle's size.
+    const vec2 span = max(abs(p), max(abs(q), abs(r)));
+    const float flat_size = max(span.x, span.y);
+    const float reach = max(max(abs(A.x), max(abs(B.x), abs(C.x))), max(max(abs(A.y), max(abs(B.y), abs(C.y))),
+                            max(abs(A.z), max(abs(B.z), abs(C.z)))));
+    // The subtraction of the origin rounds relative to the operands, which may be larger than the difference.
+    const vec3 far = max(abs(origin), max(abs(a), max(abs(b), abs(c))));
+    const float bound = 1e-6 * flat_size * max(reach, max(far.x, max(far.y, far.z)));
+    if (any(greaterThan(edges, vec3(bound))) && any(lessThan(edges, vec3(-bound)))) return PEELRAY_OUTSIDE;
+    if (any(lessThanEqual(abs(edges), vec3(bound)))) return PEELRAY_UNCERTAIN;
+    const float inv = 1.0 / (edges.x + edges.y + edges.z);
+    t = dot(edges, vec3(A.z, B.z, C.z)) * inv * sz;
+    uv = edges.yz * inv;
+    return PEELRAY_INSIDE;
 }
 
 #endif

@@ -64,8 +64,8 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
                                       abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
     const vec3 size = vec3(grid.dims);
 
-    // A ray that starts outside the box is moved to it first; fma rounds once, so that a far origin costs no precision.
-    precise vec3 start = ray.origin - grid.origin;
+    // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
+    vec3 start = ray.origin - grid.origin;
     vec3 o = start * grid.inv_voxel;
     vec3 near = min((vec3(0) - o) * inv, (size - o) * inv), far = max((vec3(0) - o) * inv, (size - o) * inv);
     float s_enter = max(near.x, max(near.y, near.z)), s_exit = min(far.x, min(far.y, far.z));
@@ -76,8 +76,9 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
     if (s_enter > 0.0 || s_exit < 0.0) {
         s_shift = s_begin;
         const float along = s_shift * grid.voxel;
-        precise vec3 moved = vec3(fma(along, d.x, start.x), fma(along, d.y, start.y), fma(along, d.z, start.z));
-        start = moved;
+        start = vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -grid.origin.x), along, d.x),
+                     peelrayFusedSum(peelrayTwoSum(ray.origin.y, -grid.origin.y), along, d.y),
+                     peelrayFusedSum(peelrayTwoSum(ray.origin.z, -grid.origin.z), along, d.z));
         o = start * grid.inv_voxel;
         s_end -= s_shift;
         s_begin = 0.0;
@@ -169,8 +170,13 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
                 PEELRAY_TRIANGLE(id, a, b, c);
                 float t;
                 vec2 uv;
-                if (!peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv)) continue;
-                const float s_hit = t * grid.inv_voxel;
+                const uint found = peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv);
+                if (found == PEELRAY_OUTSIDE) continue;
+                float s_hit = t * grid.inv_voxel;
+                if (found == PEELRAY_UNCERTAIN) {
+                    if (!peelrayIntersectPrecise(ray.origin, d, a, b, c, t, uv)) continue;
+                    s_hit = t * grid.inv_voxel - s_shift;
+                }
                 if (s_hit > s_min && s_hit < s_best) {
                     s_best = s_hit;
                     hit.triangle = id;

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "cli/program.h"
 #include "gpu/device.h"
+#include "scene/files.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -13,7 +14,7 @@ std::string joined(const std::vector<std::string>& names) {
     return text.empty() ? "none" : text;
 }
 
-std::string named(const std::string& name) { return name.empty() ? "(no name)" : name; }
+std::string named(const std::string& name) { return name.empty() ? "(no name)" : printable(name); }
 
 std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x, m.base_color.y,

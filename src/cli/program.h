@@ -23,25 +23,28 @@ struct DeviceArguments {
 
 /// Options that choose how rays are traced; shared by render and trace.
 struct TracingArguments {
-    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel", ldc = "auto";
+    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel";
     double tolerance = 0.001;
-    std::string block = "8";
+    glm::uvec2 block{8};
+    std::optional<uint32_t> ldc;  ///< none: automatic
 
-    /// Throws Error for what this version does not build yet, naming what does work.
+    /// Throws Error for values out of range and for what this version does not build yet, naming what does work.
     void check() const;
-    uint32_t resolution() const;  ///< 0: automatic
 };
 
 struct RenderArguments {
     std::string scene;
     std::filesystem::path output, stats;
-    std::string size = "1280x1024", camera, env, background;
-    std::vector<float> eye, look, up;
-    std::optional<float> fov;
+    glm::uvec2 size{1280, 1024};
+    std::string camera, env;
+    std::optional<glm::vec3> eye, look, up, background;
+    std::optional<float> fov;  ///< degrees
     bool sky = false, floor = false;
-    std::string material, tonemap = "neutral", aov;
-    std::string effects = "reflection,refraction,shadow";
-    double exposure = 0, time = 0;
+    std::string material, tonemap = "neutral";
+    std::vector<std::string> effects = {"reflection", "refraction", "shadow"}, aovs;
+    float exposure = 0;
+    std::optional<double> time, fps;
+    std::string frames;
     uint32_t bounces = 4, spp = 1, repeat = 1;
     TracingArguments tracing;
     DeviceArguments device;
@@ -61,8 +64,10 @@ void run_trace(const TraceArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 
-/// "1280x1024" to width and height. Throws Error with the text.
-glm::uvec2 parse_size(const std::string& text);
+/// Throws Error unless `repeat` is a sensible number of measurements.
+void check_repeat(uint32_t repeat);
+/// Throws Error if a file of `outputs` cannot be written, comes twice or is one of `inputs`; empty names are left out.
+void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs);
 
 /// The build's commit, for stats.
 const char* build_commit();

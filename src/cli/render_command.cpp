@@ -1,10 +1,8 @@
 // `peelray render`.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <map>
-#include <set>
+#include <optional>
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -17,67 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kAovs = {"depth", "normal", "albedo", "position", "triangle", "material"};
-
-std::vector<std::string> split(const std::string& list) {
-    std::vector<std::string> parts;
-    for (size_t begin = 0; begin <= list.size();) {
-        const size_t end = std::min(list.find(',', begin), list.size());
-        if (end > begin) parts.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
-}
-
-void parse_effects(const std::string& list, RenderSettings& settings) {
-    settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
-    const auto names = split(list);
-    if (names.empty()) fail("--effects names nothing: choose any of reflection,refraction,shadow,ambient, or none");
-    for (const std::string& name : names) {
-        if (name == "reflection")
-            settings.reflection = true;
-        else if (name == "refraction")
-            settings.refraction = true;
-        else if (name == "shadow")
-            settings.shadow = true;
-        else if (name == "ambient")
-            settings.ambient = true;
-        else if (name != "none")
-            fail("there is no effect '{}': choose any of reflection,refraction,shadow,ambient, or none (--effects)", name);
-    }
-}
-
-std::vector<std::string> parse_aovs(const std::string& list) {
-    if (list == "all") return kAovs;
-    const auto names = split(list);
-    for (const std::string& name : names)
-        if (std::find(kAovs.begin(), kAovs.end(), name) == kAovs.end())
-            fail("there is no auxiliary picture '{}': choose from depth,normal,albedo,position,triangle,material, or all (--aov)", name);
-    return names;
-}
-
-glm::vec3 parse_color(const std::string& text) {
-    glm::vec3 color;
-    const char* at = text.data();
-    const char* end = at + text.size();
-    for (int i = 0; i < 3; i++) {
-        const auto parsed = std::from_chars(at, end, color[i]);
-        const bool separated = i == 2 ? parsed.ptr == end : parsed.ptr < end && *parsed.ptr == ',';
-        if (parsed.ec != std::errc() || !separated || !std::isfinite(color[i]) || color[i] < 0)
-            fail("'{}' is no colour: write three numbers from 0 up, such as 0.5,0.6,0.7 (--background)", text);
-        at = parsed.ptr + 1;
-    }
-    return color;
-}
-
 Environment choose_environment(const RenderArguments& a, const Scene& scene) {
-    const int chosen = int(!a.env.empty()) + int(a.sky) + int(!a.background.empty());
-    if (chosen > 1) fail("--env, --sky and --background exclude each other: give one");
     if (!a.env.empty()) {
         const Image image = read_hdr(a.env);
         return image_environment(image.width, image.height, image.pixels);
     }
-    if (!a.background.empty()) return color_environment(parse_color(a.background));
+    if (a.background) return color_environment(*a.background);
     // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
     if (a.sky || scene.lights.empty()) return sky_environment(default_sun_direction());
     return color_environment(glm::vec3(0.05f));
@@ -93,26 +36,17 @@ const Camera& find_camera(const Scene& scene, const std::string& name) {
     fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
 }
 
-glm::vec3 vector_of(const std::vector<float>& values, const char* option) {
-    if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) fail("{} must be three finite numbers", option);
-    return {values[0], values[1], values[2]};
-}
-
 Camera choose_camera(const RenderArguments& a, const Scene& scene, const Geometry& geometry, float aspect) {
     Camera camera = frame_box(geometry.lower, geometry.upper, aspect);
     if (!a.camera.empty())
         camera = find_camera(scene, a.camera);
-    else if (a.eye.empty() && a.look.empty() && !scene.cameras.empty())
+    else if (!a.eye && !a.look && !scene.cameras.empty())
         camera = scene.cameras.front();
-    if (!a.eye.empty() || !a.look.empty()) camera.orthographic_height = 0;
-    if (!a.look.empty())
-        camera.look = vector_of(a.look, "--look");
-    else if (!a.eye.empty())
-        camera.look = 0.5f * (geometry.lower + geometry.upper);
-    if (!a.eye.empty()) camera.eye = vector_of(a.eye, "--eye");
-    if (!a.up.empty()) camera.up = vector_of(a.up, "--up");
+    if (a.eye || a.look) camera.orthographic_height = 0;
+    if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (geometry.lower + geometry.upper));
+    if (a.eye) camera.eye = *a.eye;
+    if (a.up) camera.up = *a.up;
     if (a.fov) {
-        if (!(*a.fov > 0 && *a.fov < 180)) fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
         camera.vertical_fov = *a.fov * 3.14159265f / 180;
         camera.orthographic_height = 0;
     }
@@ -210,34 +144,55 @@ void write_picture(const RenderResult& result, const fs::path& path) {
         write_hdr(path, Image{result.width, result.height, result.radiance});
 }
 
+/// Values that are well-formed but make no sense.
+void check_ranges(const RenderArguments& a) {
+    const auto finite = [](const std::optional<glm::vec3>& vector, const char* option) {
+        if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
+            fail("{} must be three finite numbers", option);
+    };
+    if (!a.frames.empty() || a.fps || a.time.value_or(0) != 0)
+        fail("animations are not built into this version: leave --time, --frames and --fps out");
+    finite(a.eye, "--eye");
+    finite(a.look, "--look");
+    finite(a.up, "--up");
+    finite(a.background, "--background");
+    if (a.background && glm::any(glm::lessThan(*a.background, glm::vec3(0)))) fail("a background cannot be darker than black: choose three numbers from 0 up (--background)");
+    if (a.fov && !(*a.fov > 0 && *a.fov < 180)) fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
+    if (a.size.x == 0 || a.size.y == 0) fail("a picture of {}x{} pixels is empty: choose at least 1x1 (--size)", a.size.x, a.size.y);
+    if (!(std::abs(a.exposure) <= 64)) fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
+    if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
+    if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
+    check_repeat(a.repeat);
+}
+
 RenderSettings settings_of(const RenderArguments& a) {
+    const auto has = [&](const char* effect) { return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end(); };
     RenderSettings settings;
-    const glm::uvec2 size = parse_size(a.size);
-    settings.width = size.x;
-    settings.height = size.y;
-    settings.ldc = a.tracing.resolution();
+    settings.width = a.size.x;
+    settings.height = a.size.y;
+    settings.ldc = a.tracing.ldc.value_or(0);
     settings.hit_auto = a.tracing.hit == "auto";
     settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
     settings.trace = a.tracing.tracer != "none";
     settings.bounces = a.bounces;
     settings.spp = a.spp;
     settings.repeat = a.repeat;
-    settings.exposure = float(a.exposure);
+    settings.exposure = a.exposure;
     settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
-    parse_effects(a.effects, settings);
-    settings.aovs = !parse_aovs(a.aov).empty();
-    if (!std::isfinite(a.exposure) || std::abs(a.exposure) > 64) fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
-    if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
-    if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
-    if (a.time != 0) fail("--time {}: animations are not built into this version; leave --time out", a.time);
+    settings.reflection = has("reflection");
+    settings.refraction = has("refraction");
+    settings.shadow = has("shadow");
+    settings.ambient = has("ambient");
+    settings.aovs = !a.aovs.empty();
     return settings;
 }
 
 /// What a reader of the terminal wants to know, once.
 void report(const RenderArguments& a, const RenderResult& result, size_t triangles, const Device& device, double seconds) {
     const RenderStats& s = result.stats;
-    fmt::print("{}: {}x{}, {} triangles, {:.1f} M rays", a.output.string(), result.width, result.height, triangles,
-               double(s.rays.primary + s.rays.secondary()) * 1e-6);
+    const double rays = double(s.rays.primary + s.rays.secondary());
+    fmt::print("{}: {}x{}, {} triangles, {}", a.output.string(), result.width, result.height, triangles,
+               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6));
     if (s.ldc) fmt::print(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
     if (s.timed) fmt::print("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
     fmt::print("; {:.2f} s in all on {}\n", seconds, device.info().name);
@@ -248,12 +203,13 @@ void report(const RenderArguments& a, const RenderResult& result, size_t triangl
 void run_render(const RenderArguments& a) {
     const auto start = std::chrono::steady_clock::now();
     a.tracing.check();
+    check_ranges(a);
     format_of(a.output);
     RenderSettings settings = settings_of(a);
-    const auto aovs = parse_aovs(a.aov);
-    check_writable(a.output);
-    for (const std::string& name : aovs) check_writable(aov_path(a.output, name));
-    if (!a.stats.empty()) check_writable(a.stats);
+    std::vector<fs::path> outputs = {a.output};
+    for (const std::string& name : a.aovs) outputs.push_back(aov_path(a.output, name));
+    if (!a.stats.empty()) outputs.push_back(a.stats);
+    check_outputs(outputs, {a.scene, a.env});
 
     Scene scene = load_scene(a.scene);
     Geometry geometry = flatten(scene);
@@ -271,7 +227,7 @@ void run_render(const RenderArguments& a) {
     const RenderResult result = renderer.render(settings, [&](double share) { progress.update(share); });
     device.check_validation();
     write_picture(result, a.output);
-    write_aovs(result, aovs, a.output);
+    write_aovs(result, a.aovs, a.output);
     if (!a.stats.empty()) write_json(a.stats, render_stats(device, result, geometry));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(a, result, geometry.triangles.size(), device, seconds);

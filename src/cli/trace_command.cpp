@@ -12,16 +12,16 @@ namespace peelray {
 
 void run_trace(const TraceArguments& a) {
     a.tracing.check();
-    const uint32_t resolution = a.tracing.resolution();
-    if (a.tracing.tracer != "ldc") fail("trace works with --tracer ldc only");
-    check_writable(a.hits);
-    if (!a.stats.empty()) check_writable(a.stats);
+    check_repeat(a.repeat);
+    std::vector<std::filesystem::path> outputs = {a.hits};
+    if (!a.stats.empty()) outputs.push_back(a.stats);
+    check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
     const Scene scene = load_scene(a.scene);
     const Geometry geometry = flatten(scene);
 
     RenderSettings settings;
-    settings.ldc = resolution;
+    settings.ldc = a.tracing.ldc.value_or(0);
     settings.hit_auto = a.tracing.hit == "auto";
     settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
     const AutoChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
@@ -97,8 +97,8 @@ void run_trace(const TraceArguments& a) {
         write_json(a.stats, json);
     }
     fmt::print("{}: {} rays, {} hits ({}), cube {}", a.hits.string(), rays.size(), found, choice.hit == HitTest::exact ? "exact" : "planar", choice.ldc);
-    if (device.timestamp_period() > 0) fmt::print("; GPU {:.2f} ms (cube {:.2f} ms)", trace_ms, build_ms);
-    fmt::print(" on {}\n", device.info().name);
+    if (device.timestamp_period() > 0) fmt::print("; on the GPU: cube {:.2f} ms, rays {:.2f} ms", build_ms, trace_ms);
+    fmt::print("; {}\n", device.info().name);
 }
 
 }  // namespace peelray

@@ -24,7 +24,11 @@ struct Binding {
 struct Groups {
     uint32_t x = 1, y = 1, z = 1;
 };
-inline Groups groups_for(uint64_t items, uint32_t per_group) { return {uint32_t((items + per_group - 1) / per_group)}; }
+/// Workgroups for `items` of them, `per_group` each, in rows as shaders/common.glsl counts them (GLOBAL_INDEX).
+inline Groups groups_for(uint64_t items, uint32_t per_group) {
+    const uint64_t groups = (items + per_group - 1) / per_group, row = 32768;
+    return {uint32_t(groups < row ? groups : row), uint32_t((groups + row - 1) / row)};
+}
 
 /// GPU time of one pass of a submission.
 struct PassTime {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 namespace peelray {
 namespace {
@@ -62,7 +63,10 @@ PipelineCache::PipelineCache(Device& device, bool on_disk) : device_(device) {
     if (on_disk) file_ = file_for(device.properties());
     if (!file_.empty()) {
         std::ifstream stream(file_, std::ios::binary);
-        loaded_ = unseal({std::istreambuf_iterator<char>(stream), {}});
+        std::ostringstream read;
+        read << stream.rdbuf();  // no exception where reading fails (a folder in the file's place)
+        const std::string file = read.str();
+        loaded_ = unseal({file.begin(), file.end()});
     }
     VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
     info.initialDataSize = loaded_.size();

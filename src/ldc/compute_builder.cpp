@@ -23,9 +23,9 @@ bool grow(uint32_t& capacity, uint32_t needed) {
 }  // namespace
 
 ComputeBuilder::ComputeBuilder(Device& device)
-    // Passes whose work is counted on the GPU run this many groups in a loop: enough to fill a large GPU, few for a CPU.
-    : device_(device), workers_(device.info().kind == "CPU" ? 64 : 2048) {
+    : device_(device) {
     counters_ = Buffer(device, "build counters", sizeof(LdcCounters));
+    groups_ = Buffer(device, "build workgroups", LDC_GROUPS * 12);
     counters_readback_ = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
 }
 
@@ -82,7 +82,6 @@ LdcParams ComputeBuilder::params(const Cube& cube) const {
     p.top_capacity = capacity_.tops;
     p.node_capacity = capacity_.nodes;
     p.long_capacity = capacity_.long_lists;
-    p.workers = workers_;
     return p;
 }
 
@@ -97,7 +96,7 @@ void ComputeBuilder::record_scan(Commands& commands, uint32_t capacity, uint32_t
 void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles, Cube& cube) {
     LdcParams p = params(cube);
     const uint32_t tops = top_count(cube.grid);
-    const Groups top_groups = groups_for(tops, 256), loop{workers_};
+    const Groups top_groups = groups_for(tops, 256);
     commands.begin_group("build");
     commands.fill(counters_, 0);
     commands.fill(node_masks_, 0, 0, uint64_t(tops) * 8);
@@ -107,46 +106,50 @@ void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles
                  {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_}, {"node_masks", node_masks_},
                   {"fragments", fragments_}, {"big_triangles", big_triangles_}},
                  p, groups_for(triangles.count, 64));
-    commands.run(device_.pass("ldc_tiles"),
+    commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
+    commands.run_indirect(device_.pass("ldc_tiles"),
                  {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_},
                   {"big_triangles", big_triangles_}, {"tiles", tiles_}},
-                 p, loop);
-    commands.run(device_.pass("ldc_raster_tiles"),
+                 p, groups_, LDC_GROUPS_BIG * 12);
+    commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
+    commands.run_indirect(device_.pass("ldc_raster_tiles"),
                  {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_}, {"node_masks", node_masks_},
                   {"fragments", fragments_}, {"tiles", tiles_}},
-                 p, loop);
+                 p, groups_, LDC_GROUPS_TILES * 12);
 
     commands.run(device_.pass("ldc_top_counts"), {{"node_masks", node_masks_}, {"sums", sums_}}, p, top_groups);
     record_scan(commands, tops, SCAN_NO_COUNTER);
     commands.run(device_.pass("ldc_tops"),
                  {{"node_masks", node_masks_}, {"sums", sums_}, {"top_table", cube.top_table}, {"top_cells", top_cells_}, {"counters", counters_}},
                  p, top_groups);
-    commands.run(device_.pass("ldc_nodes"),
+    commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
+    commands.run_indirect(device_.pass("ldc_nodes"),
                  {{"counters", counters_}, {"node_masks", node_masks_}, {"sums", sums_}, {"top_cells", top_cells_},
                   {"node_table", cube.node_table}, {"node_cells", node_cells_}},
-                 p, loop);
-    commands.run(device_.pass("ldc_count"),
+                 p, groups_, LDC_GROUPS_TOPS * 12);
+    commands.run_indirect(device_.pass("ldc_count"),
                  {{"counters", counters_}, {"top_table", cube.top_table}, {"node_table", cube.node_table}, {"fragments", fragments_},
                   {"voxel_counts", voxel_counts_}},
-                 p, loop);
-    commands.run(device_.pass("ldc_node_sums"), {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}}, p, loop);
+                 p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run_indirect(device_.pass("ldc_node_sums"), {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}}, p, groups_, LDC_GROUPS_NODES * 12);
     record_scan(commands, capacity_.nodes, offsetof(LdcCounters, nodes) / 4);
-    commands.run(device_.pass("ldc_voxels"),
+    commands.run_indirect(device_.pass("ldc_voxels"),
                  {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}, {"voxel_table", cube.voxel_table},
                   {"long_lists", long_lists_}},
-                 p, loop);
-    commands.run(device_.pass("ldc_scatter"),
-                 {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"fragments", fragments_}, {"unsorted_ids", unsorted_ids_}}, p, loop);
-    commands.run(device_.pass("ldc_sort"),
+                 p, groups_, LDC_GROUPS_NODES * 12);
+    commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
+    commands.run_indirect(device_.pass("ldc_scatter"),
+                 {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"fragments", fragments_}, {"unsorted_ids", unsorted_ids_}}, p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run_indirect(device_.pass("ldc_sort"),
                  {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"fragments", fragments_}, {"unsorted_ids", unsorted_ids_},
                   {"voxel_counts", voxel_counts_}, {"node_cells", node_cells_}, {"positions", triangles.positions},
                   {"triangles", triangles.triangles}, {"samples", cube.samples}, {"sample_ids", cube.sample_ids}},
-                 p, loop);
-    commands.run(device_.pass("ldc_sort_long"),
+                 p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run_indirect(device_.pass("ldc_sort_long"),
                  {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"voxel_counts", voxel_counts_}, {"long_lists", long_lists_},
                   {"node_cells", node_cells_}, {"positions", triangles.positions}, {"triangles", triangles.triangles},
                   {"unsorted_ids", unsorted_ids_}, {"sample_ids", cube.sample_ids}, {"samples", cube.samples}},
-                 p, loop);
+                 p, groups_, LDC_GROUPS_LONG * 12);
 
     const glm::uvec3 t = cube.grid.dims / 16u;
     for (p.axis = 0; p.axis < 3; p.axis++)
@@ -184,7 +187,7 @@ void ComputeBuilder::build(Commands& commands, const TriangleBuffers& triangles,
 
 uint64_t ComputeBuilder::scratch_bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&counters_, &node_masks_, &fragments_, &big_triangles_, &tiles_, &sums_, &block_sums_, &top_cells_, &node_cells_,
+    for (const Buffer* buffer : {&counters_, &groups_, &node_masks_, &fragments_, &big_triangles_, &tiles_, &sums_, &block_sums_, &top_cells_, &node_cells_,
                                  &voxel_counts_, &long_lists_, &unsorted_ids_, &occupancy_sums_})
         bytes += buffer->bytes();
     return bytes;

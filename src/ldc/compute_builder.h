@@ -43,8 +43,8 @@ class ComputeBuilder {
 
     Device& device_;
     Capacity capacity_;
-    uint32_t triangles_ = 0, redone_ = 0, workers_;
-    Buffer counters_, counters_readback_;
+    uint32_t triangles_ = 0, redone_ = 0;
+    Buffer counters_, counters_readback_, groups_;
     Buffer node_masks_, fragments_, big_triangles_, tiles_, sums_, block_sums_, top_cells_, node_cells_, voxel_counts_;
     Buffer long_lists_, unsorted_ids_, occupancy_sums_;
 };

@@ -23,9 +23,7 @@ void record_trace(Commands& commands, Device& device, const Cube& cube, const Tr
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;
     }
-    const uint32_t per_dispatch = 64u * std::min(device.limits().maxComputeWorkGroupCount[0], 1u << 24);
-    for (p.first = 0; p.first < queue.count; p.first += per_dispatch)
-        commands.run(pass, bindings, p, groups_for(std::min(queue.count - p.first, per_dispatch), 64));
+    commands.run(pass, bindings, p, groups_for(queue.count, 64));
 }
 
 }  // namespace peelray

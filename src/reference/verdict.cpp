@@ -57,7 +57,44 @@ class Neighbourhood {
                std::any_of(fine.begin(), fine.end(), holds);
     }
 
+    /// Is there one among the offset rays that are aimed at the surface where the ray is at `t`? Rays that meet a triangle
+    /// almost edge-on hit it through a window far narrower than the allowed offset: only aiming finds it.
+    template <typename Right>
+    bool any_aimed(double t, const Right& right) const {
+        const glm::dvec3 point = ray_.origin + t * ray_.direction;
+        for (const uint32_t i : near_) {
+            const auto& c = triangles_.corners[i];
+            const std::array<glm::dvec3, 3> p = {glm::dvec3(c[0]), glm::dvec3(c[1]), glm::dvec3(c[2])};
+            const glm::dvec3 nearest = nearest_point(point, p), middle = (p[0] + p[1] + p[2]) / 3.0;
+            for (const double inwards : {0.0, 1e-6, 1e-4, 1e-2}) {
+                const glm::dvec3 move = nearest + inwards * (middle - nearest) - point;
+                const Offset offset(glm::dot(move, x_), glm::dot(move, y_), 0);
+                if (glm::length(offset) <= radius_ && right(moved(offset))) return true;
+            }
+        }
+        return false;
+    }
+
   private:
+    /// The point of a triangle nearest to `q`: inside it, or on one of its edges.
+    static glm::dvec3 nearest_point(const glm::dvec3& q, const std::array<glm::dvec3, 3>& p) {
+        const glm::dvec3 normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
+        bool inside = true;
+        glm::dvec3 best = p[0];
+        double distance = std::numeric_limits<double>::infinity();
+        for (size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 a = p[i], edge = p[(i + 1) % 3] - a;
+            inside = inside && glm::dot(glm::cross(edge, q - a), normal) >= 0;
+            const double squared = glm::dot(edge, edge);
+            const glm::dvec3 on_edge = a + edge * (squared > 0 ? std::clamp(glm::dot(q - a, edge) / squared, 0.0, 1.0) : 0.0);
+            if (const double d = glm::length(q - on_edge); d < distance) {
+                distance = d;
+                best = on_edge;
+            }
+        }
+        return inside ? q - normal * glm::dot(q - p[0], normal) : best;
+    }
+
     /// The direction may be as short as 10⁻³⁰⁰, whose square is 0.
     static double max_component(const OracleRay& ray) {
         const glm::dvec3 size = glm::abs(ray.direction);
@@ -171,8 +208,8 @@ Verdict Oracle::check(const OracleRay& ray, double t, uint32_t triangle) const {
     if (!PreparedRay::make(ray, impl_->triangles)) return Verdict::wrong;  // misses by definition, wherever it starts
     const Neighbourhood around(*impl_, ray);
     if (miss ? !around.edge_near() : !around.surface_near(t)) return Verdict::wrong;
-    const bool found =
-        around.any([&](const OracleRay& moved) { return agrees(*impl_, moved, impl_->nearest(moved, ~0u), t); });
+    const auto right = [&](const OracleRay& moved) { return agrees(*impl_, moved, impl_->nearest(moved, ~0u), t); };
+    const bool found = (!miss && around.any_aimed(t, right)) || around.any(right);
     return found ? Verdict::within_offset : Verdict::wrong;
 }
 

@@ -27,7 +27,9 @@ class FolderIo : public Assimp::IOSystem {
     FolderIo(std::filesystem::path folder, std::string main_name, const Bytes& main_bytes)
         : folder_(std::move(folder)), main_name_(std::move(main_name)), main_bytes_(main_bytes) {}
 
-    bool Exists(const char* file) const override { return file == main_name_ || const_cast<FolderIo*>(this)->find(file) != nullptr; }
+    bool Exists(const char* file) const override {
+        return file == main_name_ || const_cast<FolderIo*>(this)->find(file) != nullptr;
+    }
     char getOsSeparator() const override { return '/'; }
     void Close(Assimp::IOStream* stream) override { delete stream; }
 
@@ -84,7 +86,8 @@ void copy_vertices(const aiMesh& mesh, bool use_normals, const std::string& wher
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
         const glm::vec3 p = to_vec3(mesh.mVertices[i]);
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            fail("{}: vertex {} is at ({}, {}, {}); repair the mesh, positions must be finite", where, i, p.x, p.y, p.z);
+            fail("{}: vertex {} is at ({}, {}, {}); repair the mesh, positions must be finite", where, i, p.x, p.y,
+                 p.z);
         out.positions.push_back(p);
         if (use_normals) out.normals.push_back(to_vec3(mesh.mNormals[i]));
         if (mesh.HasTextureCoords(0)) {
@@ -101,7 +104,8 @@ void copy_vertices(const aiMesh& mesh, bool use_normals, const std::string& wher
     }
 }
 
-Primitive convert_mesh(const aiMesh& mesh, const std::string& extension, const std::string& where, std::vector<std::string>& notes) {
+Primitive convert_mesh(const aiMesh& mesh, const std::string& extension, const std::string& where,
+                       std::vector<std::string>& notes) {
     Primitive out;
     out.material = mesh.mMaterialIndex;
     // STL has one normal per triangle, often wrong, and none of the smooth ones that a curved body needs.
@@ -113,11 +117,13 @@ Primitive convert_mesh(const aiMesh& mesh, const std::string& extension, const s
         if (face.mNumIndices != 3) continue;
         const glm::uvec3 t(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
         const unsigned largest = std::max({t.x, t.y, t.z});
-        if (largest >= mesh.mNumVertices) fail("{}: triangle {} has index {}, the mesh has {} vertices", where, i, largest, mesh.mNumVertices);
+        if (largest >= mesh.mNumVertices)
+            fail("{}: triangle {} has index {}, the mesh has {} vertices", where, i, largest, mesh.mNumVertices);
         out.triangles.push_back(t);
     }
     if (use_normals) {
-        if (const size_t repaired = repair_normals(out)) notes.push_back(fmt::format("{} normals without direction replaced", repaired));
+        if (const size_t repaired = repair_normals(out))
+            notes.push_back(fmt::format("{} normals without direction replaced", repaired));
         weld(out);
     } else {
         make_smooth(out, crease);
@@ -125,7 +131,8 @@ Primitive convert_mesh(const aiMesh& mesh, const std::string& extension, const s
     return out;
 }
 
-/// Depth first, which is the order of the file. Assimp gives these formats no transforms worth the name, but keeps them.
+/// Depth first, which is the order of the file. Assimp gives these formats no transforms worth the name, but keeps
+/// them.
 void convert_nodes(const aiScene& from, const std::string& extension, Scene& scene) {
     std::vector<std::pair<const aiNode*, int>> todo{{from.mRootNode, -1}};
     while (!todo.empty()) {
@@ -135,14 +142,16 @@ void convert_nodes(const aiScene& from, const std::string& extension, Scene& sce
         node.name = source->mName.C_Str();
         node.parent = parent;
         for (int r = 0; r < 4; ++r)
-            for (int c = 0; c < 4; ++c) node.local[c][r] = source->mTransformation[static_cast<unsigned>(r)][static_cast<unsigned>(c)];
+            for (int c = 0; c < 4; ++c)
+                node.local[c][r] = source->mTransformation[static_cast<unsigned>(r)][static_cast<unsigned>(c)];
         if (source->mNumMeshes) {
             node.mesh = static_cast<int>(scene.meshes.size());
             Mesh mesh{node.name, {}};
             for (unsigned i = 0; i < source->mNumMeshes; ++i) {
                 const aiMesh& part = *from.mMeshes[source->mMeshes[i]];
                 if (part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)
-                    mesh.primitives.push_back(convert_mesh(part, extension, fmt::format("{}: mesh {}", scene.name, source->mMeshes[i]), scene.notes));
+                    mesh.primitives.push_back(convert_mesh(
+                        part, extension, fmt::format("{}: mesh {}", scene.name, source->mMeshes[i]), scene.notes));
             }
             scene.meshes.push_back(std::move(mesh));
         }
@@ -154,12 +163,14 @@ void convert_nodes(const aiScene& from, const std::string& extension, Scene& sce
 
 const aiScene* import(Assimp::Importer& importer, const std::string& file, const std::string& name) {
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    // Neither step reorders triangles; JoinIdenticalVertices and GenSmoothNormals are ours (normals.h), since Assimp's compare
-    // within a tolerance and take quadratic time where many vertices coincide.
-    const aiScene* scene = importer.ReadFile(file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
+    // Neither step reorders triangles; JoinIdenticalVertices and GenSmoothNormals are ours (normals.h), since Assimp's
+    // compare within a tolerance and take quadratic time where many vertices coincide.
+    const aiScene* scene =
+        importer.ReadFile(file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
     if (!scene || !scene->mRootNode) {
         const std::string reason = importer.GetErrorString();
-        fail("{}: no mesh could be read from the file: {}", name, reason.empty() ? "it has no surface" : printable(reason, 200));
+        fail("{}: no mesh could be read from the file: {}", name,
+             reason.empty() ? "it has no surface" : printable(reason, 200));
     }
     return scene;
 }
@@ -175,8 +186,10 @@ Scene load_assimp(const std::filesystem::path& path, const std::string& extensio
     if (extension == ".ply") {
         const size_t body = check_ply(bytes, scene.name);
         const std::string_view header(reinterpret_cast<const char*>(bytes.data()), body);
-        // Assimp takes a first byte of 10 in a binary body for the second half of "\r\n" and drops it: give it one to drop.
-        if (header.find("format binary") != std::string_view::npos && !header.ends_with("\r\n") && body < bytes.size() && bytes[body] == '\n')
+        // Assimp takes a first byte of 10 in a binary body for the second half of "\r\n" and drops it: give it one to
+        // drop.
+        if (header.find("format binary") != std::string_view::npos && !header.ends_with("\r\n") &&
+            body < bytes.size() && bytes[body] == '\n')
             bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(body), '\n');
     }
     if (extension == ".off") check_off(bytes, scene.name);
@@ -185,7 +198,8 @@ Scene load_assimp(const std::filesystem::path& path, const std::string& extensio
     importer.SetIOHandler(new FolderIo(path.parent_path(), file, bytes));  // the importer deletes it
     try {
         const aiScene* from = import(importer, file, scene.name);
-        for (unsigned i = 0; i < from->mNumMaterials; ++i) scene.materials.push_back(convert_material(*from->mMaterials[i], path.parent_path(), scene));
+        for (unsigned i = 0; i < from->mNumMaterials; ++i)
+            scene.materials.push_back(convert_material(*from->mMaterials[i], path.parent_path(), scene));
         if (scene.materials.empty()) scene.materials.emplace_back();
         convert_nodes(*from, extension, scene);
     } catch (const Error&) {

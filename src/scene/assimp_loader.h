@@ -14,8 +14,8 @@ namespace peelray {
 /// Reads the file; `extension` in lower case with its dot.
 ///
 /// The triangles come in file order; a polygon gives its triangles in place. An OBJ file's `o` and `g` statements start
-/// objects, which come in the order of their first appearance (an `o` name that returns later adds to its first object);
-/// inside an object `usemtl` starts a new primitive, in file order.
+/// objects, which come in the order of their first appearance (an `o` name that returns later adds to its first
+/// object); inside an object `usemtl` starts a new primitive, in file order.
 Scene load_assimp(const std::filesystem::path& path, const std::string& extension);
 
 /// Refuses files whose claimed counts or indices the data cannot hold, before Assimp allocates for them.

@@ -47,7 +47,8 @@ void read_texture(const aiMaterial& from, const std::filesystem::path& folder, S
         out.base_color_texture = static_cast<int>(scene.textures.size());
         scene.textures.push_back(std::move(texture));
     } catch (const Error& error) {
-        scene.notes.push_back(fmt::format("texture of material \"{}\" ignored: {}", printable(out.name, 60), error.what()));
+        scene.notes.push_back(
+            fmt::format("texture of material \"{}\" ignored: {}", printable(out.name, 60), error.what()));
     }
 }
 
@@ -87,7 +88,8 @@ Material convert_material(const aiMaterial& from, const std::filesystem::path& f
         out.base_color = specular;
     }
     if (const auto metallic = number(from, AI_MATKEY_METALLIC_FACTOR)) out.metallic = std::clamp(*metallic, 0.f, 1.f);
-    if (const auto roughness = number(from, AI_MATKEY_ROUGHNESS_FACTOR)) out.roughness = std::clamp(*roughness, 0.f, 1.f);
+    if (const auto roughness = number(from, AI_MATKEY_ROUGHNESS_FACTOR))
+        out.roughness = std::clamp(*roughness, 0.f, 1.f);
     read_transmission(from, illum, out);
     read_texture(from, folder, scene, out);
     return out;

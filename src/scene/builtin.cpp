@@ -20,7 +20,8 @@ uint64_t parse_count(std::string_view digits) {
     uint64_t count = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
     if (error != std::errc() || end != digits.data() + digits.size() || count < 8 || count > 10'000'000)
-        fail("builtin:blob:{}: N must be a whole number from 8 to 10000000, as in builtin:blob:120000", printable(digits, 40));
+        fail("builtin:blob:{}: N must be a whole number from 8 to 10000000, as in builtin:blob:120000",
+             printable(digits, 40));
     return count;
 }
 
@@ -33,7 +34,8 @@ Scene make_builtin(std::string_view name) {
     if (name == "blob") return make_blob(parse_count(""));
     if (name.starts_with("blob:")) return make_blob(parse_count(name.substr(5)));
     std::string known;
-    for (const BuiltinScene& scene : builtin_scenes()) known += fmt::format("{}{}", known.empty() ? "" : ", ", scene.name);
+    for (const BuiltinScene& scene : builtin_scenes())
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", scene.name);
     fail("builtin:{}: no such built-in scene; known are {}", printable(name, 40), known);
 }
 
@@ -49,8 +51,10 @@ Scene make_teapots() {
         const glm::mat4 moved = glm::translate(glm::mat4(1), at + glm::vec3(0, 0.004f, 0));
         return glm::scale(glm::rotate(moved, glm::radians(degrees), glm::vec3(0, 1, 0)), glm::vec3(scale));
     };
-    build.add("chrome teapot", teapot(16), build.material(metal("chrome", {0.92f, 0.93f, 0.95f})), place({-1.25f, 0, 0.25f}, 28, 0.5f));
-    build.add("copper teapot", teapot(16), build.material(metal("copper", {0.95f, 0.64f, 0.43f})), place({1.55f, 0, -0.75f}, 205, 0.5f));
+    build.add("chrome teapot", teapot(16), build.material(metal("chrome", {0.92f, 0.93f, 0.95f})),
+              place({-1.25f, 0, 0.25f}, 28, 0.5f));
+    build.add("copper teapot", teapot(16), build.material(metal("copper", {0.95f, 0.64f, 0.43f})),
+              place({1.55f, 0, -0.75f}, 205, 0.5f));
 
     const auto ball = [&](const char* name, const glm::vec3& color, const glm::vec3& at, float radius) {
         build.add(name, sphere(at + glm::vec3(0, radius, 0), radius, 16), build.material(matte(name, color)));
@@ -60,9 +64,12 @@ Scene make_teapots() {
     ball("yellow ball", {0.90f, 0.62f, 0.06f}, {2.75f, 0, 1.05f}, 0.38f);
     ball("green ball", {0.10f, 0.52f, 0.14f}, {0.1f, 0, -2.2f}, 0.6f);
     ball("white ball", {0.85f, 0.85f, 0.82f}, {-0.75f, 0, 1.95f}, 0.2f);
-    build.add("teal torus", torus({1.25f, 0.16f, 1.45f}, 0.42f, 0.16f, 64, 32), build.material(matte("teal", {0.03f, 0.48f, 0.46f})));
-    build.add("orange torus", torus({0, 0, 0}, 0.5f, 0.17f, 64, 32), build.material(matte("orange", {0.88f, 0.30f, 0.05f})),
-              glm::rotate(glm::translate(glm::mat4(1), {-3.05f, 0.67f, 1.15f}), glm::radians(78.f), glm::vec3(0.8f, 0, 0.6f)));
+    build.add("teal torus", torus({1.25f, 0.16f, 1.45f}, 0.42f, 0.16f, 64, 32),
+              build.material(matte("teal", {0.03f, 0.48f, 0.46f})));
+    build.add("orange torus", torus({0, 0, 0}, 0.5f, 0.17f, 64, 32),
+              build.material(matte("orange", {0.88f, 0.30f, 0.05f})),
+              glm::rotate(glm::translate(glm::mat4(1), {-3.05f, 0.67f, 1.15f}), glm::radians(78.f),
+                          glm::vec3(0.8f, 0, 0.6f)));
     build.camera({0.55f, 2.75f, 8.0f}, {-0.02f, 0.52f, 0.0f}, 36);
     return build.take();
 }
@@ -88,15 +95,20 @@ Scene make_glass() {
         out.attenuation_distance = 1.5f;
         return build.material(out);
     };
-    build.add("glass sphere", sphere({-0.55f, 0.85f, 1.3f}, 0.8f, 40), glass("green glass", {0.70f, 0.95f, 0.80f}, 1.6f));
-    build.add("glass torus", torus({0, 0, 0}, 0.75f, 0.27f, 128, 64), glass("blue glass", {0.62f, 0.80f, 0.97f}, 0.54f),
-              glm::rotate(glm::translate(glm::mat4(1), {0.15f, 1.1f, -0.5f}), glm::radians(72.f), glm::vec3(1, 0.15f, 0)));
-    build.add("glass block", box({-0.35f, -0.6f, -0.35f}, {0.35f, 0.6f, 0.35f}), glass("clear glass", {0.85f, 0.97f, 0.93f}, 0.7f),
+    build.add("glass sphere", sphere({-0.55f, 0.85f, 1.3f}, 0.8f, 40),
+              glass("green glass", {0.70f, 0.95f, 0.80f}, 1.6f));
+    build.add(
+        "glass torus", torus({0, 0, 0}, 0.75f, 0.27f, 128, 64), glass("blue glass", {0.62f, 0.80f, 0.97f}, 0.54f),
+        glm::rotate(glm::translate(glm::mat4(1), {0.15f, 1.1f, -0.5f}), glm::radians(72.f), glm::vec3(1, 0.15f, 0)));
+    build.add("glass block", box({-0.35f, -0.6f, -0.35f}, {0.35f, 0.6f, 0.35f}),
+              glass("clear glass", {0.85f, 0.97f, 0.93f}, 0.7f),
               glm::rotate(glm::translate(glm::mat4(1), {1.35f, 0.61f, 0.95f}), glm::radians(32.f), glm::vec3(0, 1, 0)));
-    build.add("mirror", box({-1.0f, 0, -0.04f}, {1.0f, 2.3f, 0.04f}), build.material(metal("mirror", glm::vec3(0.95f))),
-              glm::rotate(glm::translate(glm::mat4(1), {2.15f, 0.01f, -1.45f}), glm::radians(-30.f), glm::vec3(0, 1, 0)));
+    build.add(
+        "mirror", box({-1.0f, 0, -0.04f}, {1.0f, 2.3f, 0.04f}), build.material(metal("mirror", glm::vec3(0.95f))),
+        glm::rotate(glm::translate(glm::mat4(1), {2.15f, 0.01f, -1.45f}), glm::radians(-30.f), glm::vec3(0, 1, 0)));
     build.add("red ball", sphere({-2.1f, 0.5f, -1.2f}, 0.5f, 16), build.material(matte("red", {0.78f, 0.06f, 0.05f})));
-    build.add("yellow ball", sphere({0.75f, 0.28f, 2.2f}, 0.28f, 16), build.material(matte("yellow", {0.88f, 0.65f, 0.08f})));
+    build.add("yellow ball", sphere({0.75f, 0.28f, 2.2f}, 0.28f, 16),
+              build.material(matte("yellow", {0.88f, 0.65f, 0.08f})));
     build.camera({0.25f, 1.85f, 6.9f}, {0.3f, 0.85f, 0.0f}, 34);
     return build.take();
 }

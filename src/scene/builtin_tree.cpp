@@ -11,7 +11,7 @@ namespace peelray {
 
 namespace {
 
-constexpr int generations = 7;       // trunk, then six forks
+constexpr int generations = 7;  // trunk, then six forks
 constexpr int leaves_per_twig = 26;
 
 struct Branch {
@@ -25,7 +25,8 @@ glm::vec3 any_perpendicular(const glm::vec3& v) {
 }
 
 /// Open tube from `from` to `to`; its ends lie inside the neighbouring branches.
-void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float from_radius, float to_radius, uint32_t sides) {
+void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float from_radius, float to_radius,
+              uint32_t sides) {
     const glm::vec3 axis = glm::normalize(to - from), x = any_perpendicular(axis), y = glm::cross(axis, x);
     const float taper = (from_radius - to_radius) / glm::length(to - from);
     const auto first = static_cast<uint32_t>(out.positions.size());
@@ -43,7 +44,8 @@ void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float 
 
 /// A leaf: a diamond of two triangles, folded a little along its rib, so that light falls differently on its halves.
 void add_leaf(Primitive& out, const glm::vec3& stem, const glm::vec3& along, float length, Random& random) {
-    const glm::vec3 side = glm::normalize(glm::cross(along, glm::vec3(random.between(-0.6f, 0.6f), 1, random.between(-0.6f, 0.6f))));
+    const glm::vec3 side =
+        glm::normalize(glm::cross(along, glm::vec3(random.between(-0.6f, 0.6f), 1, random.between(-0.6f, 0.6f))));
     const glm::vec3 up = glm::cross(side, along);
     const glm::vec3 middle = stem + along * (0.45f * length), tip = stem + along * length;
     const float width = 0.28f * length, fold = 0.09f * length;
@@ -62,7 +64,8 @@ void add_twig_leaves(Primitive& leaves, const Branch& twig, Random& random) {
     for (int i = 0; i < leaves_per_twig; ++i) {
         const float angle = 2.399963f * static_cast<float>(i) + random.between(-0.4f, 0.4f);  // the golden angle
         const glm::vec3 outwards = std::cos(angle) * x + std::sin(angle) * y;
-        const glm::vec3 along = glm::normalize(outwards + twig.direction * random.between(0.2f, 0.9f) + glm::vec3(0, random.between(-0.5f, 0.2f), 0));
+        const glm::vec3 along = glm::normalize(outwards + twig.direction * random.between(0.2f, 0.9f) +
+                                               glm::vec3(0, random.between(-0.5f, 0.2f), 0));
         const glm::vec3 stem = twig.base + twig.direction * (twig.length * random.between(0.15f, 1.05f));
         add_leaf(leaves, stem, along, random.between(0.13f, 0.22f), random);
     }
@@ -74,13 +77,15 @@ void fork(const Branch& parent, Random& random, std::vector<Branch>& out) {
     const int children = parent.generation < 2 ? 4 : 3;
     const float phase = random.between(0, 6.28f);
     for (int i = 0; i < children; ++i) {
-        const float angle = phase + 6.2831853f * (static_cast<float>(i) + random.between(-0.2f, 0.2f)) / static_cast<float>(children);
+        const float angle =
+            phase + 6.2831853f * (static_cast<float>(i) + random.between(-0.2f, 0.2f)) / static_cast<float>(children);
         const float spread = random.between(0.4f, 1.0f);
         glm::vec3 direction = parent.direction + spread * (std::cos(angle) * x + std::sin(angle) * y);
         direction.y += 0.02f;  // towards the light
         // Children start at different heights of the upper part of their parent, as on a real tree.
         const glm::vec3 base = tip - parent.direction * (parent.length * random.between(0.0f, 0.4f));
-        out.push_back({base, glm::normalize(direction), parent.length * random.between(0.66f, 0.82f), parent.radius * random.between(0.52f, 0.66f), parent.generation + 1});
+        out.push_back({base, glm::normalize(direction), parent.length * random.between(0.66f, 0.82f),
+                       parent.radius * random.between(0.52f, 0.66f), parent.generation + 1});
     }
 }
 
@@ -95,11 +100,17 @@ Scene make_tree() {
         const Branch branch = todo.back();
         todo.pop_back();
         const glm::vec3 tip = branch.base + branch.direction * branch.length;
-        add_tube(wood, branch.base, tip, branch.radius, branch.radius * 0.68f, branch.generation < 3 ? 12u : branch.generation < 5 ? 8u : 5u);
-        if (branch.generation == generations) add_twig_leaves(leaves, branch, random);
-        else fork(branch, random, todo);
+        add_tube(wood, branch.base, tip, branch.radius, branch.radius * 0.68f,
+                 branch.generation < 3   ? 12u
+                 : branch.generation < 5 ? 8u
+                                         : 5u);
+        if (branch.generation == generations)
+            add_twig_leaves(leaves, branch, random);
+        else
+            fork(branch, random, todo);
     }
-    build.add("ground", parallelogram({-7, 0, 7}, {14, 0, 0}, {0, 0, -14}), build.material(matte("ground", {0.42f, 0.38f, 0.28f})));
+    build.add("ground", parallelogram({-7, 0, 7}, {14, 0, 0}, {0, 0, -14}),
+              build.material(matte("ground", {0.42f, 0.38f, 0.28f})));
     build.add("wood", std::move(wood), build.material(matte("bark", {0.16f, 0.10f, 0.06f})));
     Material leaf = matte("leaves", {0.12f, 0.33f, 0.06f});
     leaf.roughness = 0.6f;

@@ -27,7 +27,8 @@ Bytes read_file(const fs::path& path, const std::string& where) {
     if (error || !stream) fail("{}: cannot be read; check its permissions", name);
     Bytes bytes(size);
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (static_cast<uintmax_t>(stream.gcount()) != size) fail("{}: only {} of {} bytes could be read", name, stream.gcount(), size);
+    if (static_cast<uintmax_t>(stream.gcount()) != size)
+        fail("{}: only {} of {} bytes could be read", name, stream.gcount(), size);
     return bytes;
 }
 
@@ -72,10 +73,10 @@ Bytes decode_base64(std::string_view text, const std::string& where) {
 /// "http:", "file:", also "C:": a letter followed by letters, digits, '+', '-', '.' up to a colon.
 bool has_scheme(std::string_view uri) {
     const size_t colon = uri.find(':');
-    if (colon == std::string_view::npos || colon == 0 || !std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
-    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon), [](unsigned char c) {
-        return std::isalnum(c) || c == '+' || c == '-' || c == '.';
-    });
+    if (colon == std::string_view::npos || colon == 0 || !std::isalpha(static_cast<unsigned char>(uri[0])))
+        return false;
+    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon),
+                       [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
 }
 
 }  // namespace
@@ -88,7 +89,8 @@ std::string percent_decode(std::string_view text, const std::string& where) {
         if (c == '%') {
             const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
             const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
-            if (high < 0 || low < 0) fail("{}: the URI \"{}\" has a stray '%'; write it as %25", where, printable(text));
+            if (high < 0 || low < 0)
+                fail("{}: the URI \"{}\" has a stray '%'; write it as %25", where, printable(text));
             c = static_cast<char>(high * 16 + low);
             i += 2;
         }
@@ -104,7 +106,8 @@ bool is_data_uri(std::string_view uri) {
 
 Bytes decode_data_uri(std::string_view uri, const std::string& where) {
     const size_t comma = uri.find(',');
-    if (!is_data_uri(uri) || comma == std::string_view::npos) fail("{}: \"{}\" is no valid data URI", where, printable(uri, 40));
+    if (!is_data_uri(uri) || comma == std::string_view::npos)
+        fail("{}: \"{}\" is no valid data URI", where, printable(uri, 40));
     const std::string_view header = uri.substr(0, comma), body = uri.substr(comma + 1);
     if (header.ends_with(";base64")) return decode_base64(body, where);
     const std::string text = percent_decode(body, where);
@@ -115,10 +118,12 @@ fs::path resolve_inside(const fs::path& folder, const std::string& relative, con
     const std::string shown = printable(relative);
     const fs::path wanted(relative);
     if (relative.empty()) fail("{}: the URI is empty", where);
-    if (wanted.is_absolute() || relative[0] == '\\') fail("{}: refused to read the absolute path \"{}\"; keep the file in the scene's folder", where, shown);
+    if (wanted.is_absolute() || relative[0] == '\\')
+        fail("{}: refused to read the absolute path \"{}\"; keep the file in the scene's folder", where, shown);
     // A file really called "a:b" is fine; "http://…", "file:…" and "C:…" are not ours to open.
     std::error_code error;
-    if (has_scheme(relative) && !fs::exists(folder / wanted, error)) fail("{}: refused to read \"{}\"; only files in the scene's folder and data: URIs are read", where, shown);
+    if (has_scheme(relative) && !fs::exists(folder / wanted, error))
+        fail("{}: refused to read \"{}\"; only files in the scene's folder and data: URIs are read", where, shown);
     const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
     if (error) fail("{}: the folder {} cannot be resolved: {}", where, folder.string(), error.message());
     const fs::path target = fs::weakly_canonical(root / wanted, error);

@@ -8,8 +8,8 @@ namespace peelray {
 
 namespace {
 
-/// Transforms normals: the cofactors of the 3×3 part are its inverse transpose times the determinant, and stay finite where
-/// it has no inverse (a mesh scaled flat).
+/// Transforms normals: the cofactors of the 3×3 part are its inverse transpose times the determinant, and stay finite
+/// where it has no inverse (a mesh scaled flat).
 struct NormalTransform {
     glm::dmat3 cofactors;
     bool mirrors;
@@ -47,19 +47,24 @@ Totals count(const Scene& scene) {
     return totals;
 }
 
-void append_vertices(Geometry& out, const Primitive& primitive, const glm::mat4& world, const NormalTransform& to_normal,
-                     const Node& node, const Totals& totals) {
+void append_vertices(Geometry& out, const Primitive& primitive, const glm::mat4& world,
+                     const NormalTransform& to_normal, const Node& node, const Totals& totals) {
     for (size_t i = 0; i < primitive.positions.size(); ++i) {
         const glm::vec3 p = glm::vec3(world * glm::vec4(primitive.positions[i], 1));
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down", node.name, i);
+            fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",
+                 node.name, i);
         out.positions.push_back(p);
     }
     for (const glm::vec3& normal : primitive.normals) out.normals.push_back(to_normal(normal));
-    if (primitive.uvs.empty()) out.uvs.resize(out.positions.size(), glm::vec2(0));
-    else out.uvs.insert(out.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
-    if (totals.colors && primitive.colors.empty()) out.colors.resize(out.positions.size(), glm::vec4(1));
-    else out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
+    if (primitive.uvs.empty())
+        out.uvs.resize(out.positions.size(), glm::vec2(0));
+    else
+        out.uvs.insert(out.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
+    if (totals.colors && primitive.colors.empty())
+        out.colors.resize(out.positions.size(), glm::vec4(1));
+    else
+        out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
 }
 
 void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first, bool mirrors) {
@@ -84,7 +89,8 @@ Geometry flatten(const Scene& scene) {
     if (totals.triangles == 0) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
     constexpr uint64_t limit = uint64_t(1) << 29;
     if (totals.vertices > limit || totals.triangles > limit)
-        fail("{}: {} vertices and {} triangles with all instances, at most {} of each are supported; split the scene", scene.name, totals.vertices, totals.triangles, limit);
+        fail("{}: {} vertices and {} triangles with all instances, at most {} of each are supported; split the scene",
+             scene.name, totals.vertices, totals.triangles, limit);
     Geometry out;
     out.positions.reserve(totals.vertices);
     out.normals.reserve(totals.vertices);
@@ -129,7 +135,8 @@ Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
     }
     // A single point far from the origin needs a distance that its coordinates can still express.
     const glm::vec3 magnitude = glm::abs(camera.look);
-    distance = std::max(distance, 1e-3f * std::max({magnitude.x, magnitude.y, magnitude.z}) * (half == glm::vec3(0) ? 1.f : 0.f));
+    distance = std::max(distance,
+                        1e-3f * std::max({magnitude.x, magnitude.y, magnitude.z}) * (half == glm::vec3(0) ? 1.f : 0.f));
     camera.eye = camera.look + back * distance;
     return camera;
 }

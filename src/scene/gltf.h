@@ -27,19 +27,19 @@ struct GltfLoader {
     GltfFile file;
     Scene scene;
     Tally ignored;
-    std::vector<UvSource> uv_sources;                ///< per material
+    std::vector<UvSource> uv_sources;  ///< per material
     std::vector<JsonView> meshes, nodes, textures, samplers;
     std::map<std::tuple<uint32_t, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
-    uint64_t triangles = 0;                          ///< in all primitives read so far
+    uint64_t triangles = 0;                                           ///< in all primitives read so far
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 
-    void read_extensions();               // gltf.cpp
-    void read_animations();               // gltf.cpp
-    void write_notes();                   // gltf.cpp
-    void read_materials();                // gltf_material.cpp; adds the default material at the end
-    void read_mesh(uint32_t index);       // gltf_mesh.cpp
-    void read_nodes();                    // gltf_node.cpp; also reads the meshes, cameras and lights that they show
+    void read_extensions();          // gltf.cpp
+    void read_animations();          // gltf.cpp
+    void write_notes();              // gltf.cpp
+    void read_materials();           // gltf_material.cpp; adds the default material at the end
+    void read_mesh(uint32_t index);  // gltf_mesh.cpp
+    void read_nodes();               // gltf_node.cpp; also reads the meshes, cameras and lights that they show
 };
 
 /// Reads a .gltf or .glb file.

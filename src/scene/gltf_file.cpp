@@ -15,10 +15,17 @@ uint32_t read_u32(std::span<const uint8_t> bytes, size_t offset) {
 
 uint32_t component_size(uint32_t type) {
     switch (type) {
-        case 5120: case 5121: return 1;
-        case 5122: case 5123: return 2;
-        case 5125: case 5126: return 4;
-        default: return 0;
+        case 5120:
+        case 5121:
+            return 1;
+        case 5122:
+        case 5123:
+            return 2;
+        case 5125:
+        case 5126:
+            return 4;
+        default:
+            return 0;
     }
 }
 
@@ -41,12 +48,19 @@ T load(const uint8_t* from) {
 
 float load_float(const uint8_t* from, uint32_t type, bool normalized) {
     switch (type) {
-        case 5120: return normalized ? std::max(load<int8_t>(from) / 127.f, -1.f) : load<int8_t>(from);
-        case 5121: return normalized ? *from / 255.f : *from;
-        case 5122: return normalized ? std::max(load<int16_t>(from) / 32767.f, -1.f) : load<int16_t>(from);
-        case 5123: return normalized ? load<uint16_t>(from) / 65535.f : load<uint16_t>(from);
-        case 5125: return normalized ? static_cast<float>(load<uint32_t>(from) / 4294967295.0) : static_cast<float>(load<uint32_t>(from));
-        default: return load<float>(from);
+        case 5120:
+            return normalized ? std::max(load<int8_t>(from) / 127.f, -1.f) : load<int8_t>(from);
+        case 5121:
+            return normalized ? *from / 255.f : *from;
+        case 5122:
+            return normalized ? std::max(load<int16_t>(from) / 32767.f, -1.f) : load<int16_t>(from);
+        case 5123:
+            return normalized ? load<uint16_t>(from) / 65535.f : load<uint16_t>(from);
+        case 5125:
+            return normalized ? static_cast<float>(load<uint32_t>(from) / 4294967295.0)
+                              : static_cast<float>(load<uint32_t>(from));
+        default:
+            return load<float>(from);
     }
 }
 
@@ -56,10 +70,12 @@ uint32_t load_index(const uint8_t* from, uint32_t type) {
 
 }  // namespace
 
-GltfFile::GltfFile(const std::filesystem::path& path) : name_(printable(path.filename().string())), folder_(path.parent_path()) {
+GltfFile::GltfFile(const std::filesystem::path& path)
+    : name_(printable(path.filename().string())), folder_(path.parent_path()) {
     parse(path);
     const std::string version = root().object("asset").text("version", "");
-    if (!version.starts_with("2.")) fail("{}: glTF version \"{}\" is not supported; convert it to glTF 2.0", name_, printable(version, 20));
+    if (!version.starts_with("2."))
+        fail("{}: glTF version \"{}\" is not supported; convert it to glTF 2.0", name_, printable(version, 20));
     buffers_ = root().objects("buffers");
     views_ = root().objects("bufferViews");
     accessors_ = root().objects("accessors");
@@ -85,15 +101,18 @@ void GltfFile::parse(const std::filesystem::path& path) {
 std::span<const uint8_t> GltfFile::split_glb() {
     const std::span<const uint8_t> all = bytes_;
     if (all.size() < 20) fail("{}: truncated GLB: {} bytes, the headers need 20", name_, all.size());
-    if (read_u32(all, 4) != 2) fail("{}: GLB version {} is not supported; convert it to glTF 2.0", name_, read_u32(all, 4));
+    if (read_u32(all, 4) != 2)
+        fail("{}: GLB version {} is not supported; convert it to glTF 2.0", name_, read_u32(all, 4));
     const size_t length = read_u32(all, 8);
-    if (length > all.size()) fail("{}: truncated GLB: the header says {} bytes, the file has {}", name_, length, all.size());
+    if (length > all.size())
+        fail("{}: truncated GLB: the header says {} bytes, the file has {}", name_, length, all.size());
     std::span<const uint8_t> json;
     size_t chunks = 0;
     for (size_t at = 12; at + 8 <= length; ++chunks) {
         const size_t size = read_u32(all, at);
         const uint32_t type = read_u32(all, at + 4);
-        if (size > length - at - 8) fail("{}: truncated GLB: chunk {} says {} bytes, {} are left", name_, chunks, size, length - at - 8);
+        if (size > length - at - 8)
+            fail("{}: truncated GLB: chunk {} says {} bytes, {} are left", name_, chunks, size, length - at - 8);
         const std::span<const uint8_t> chunk = all.subspan(at + 8, size);
         if (chunks == 0) {
             if (type != 0x4E4F534A) fail("{}: the first chunk of the GLB is not JSON", name_);
@@ -124,7 +143,8 @@ std::span<const uint8_t> GltfFile::buffer(uint32_t index) {
         }
         data = *loaded;
     }
-    if (data.size() < length) fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", json.where(), length, data.size());
+    if (data.size() < length)
+        fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", json.where(), length, data.size());
     return data.first(length);
 }
 
@@ -133,7 +153,8 @@ std::span<const uint8_t> GltfFile::view(uint32_t index) {
     const std::span<const uint8_t> data = buffer(json.required_index("buffer", buffers_.size(), "buffers"));
     const uint64_t offset = json.count("byteOffset", 0), length = json.required_count("byteLength");
     if (offset > data.size() || length > data.size() - offset)
-        fail("{}: bytes {} to {} are outside of its buffer of {} bytes", json.where(), offset, offset + length, data.size());
+        fail("{}: bytes {} to {} are outside of its buffer of {} bytes", json.where(), offset, offset + length,
+             data.size());
     return data.subspan(offset, length);
 }
 
@@ -148,23 +169,27 @@ GltfFile::Accessor GltfFile::accessor(uint32_t index) const {
     out.components = component_count(type);
     if (!out.components) fail("{}: the type \"{}\" is unknown", out.where, printable(type, 20));
     out.component_type = static_cast<uint32_t>(std::min<uint64_t>(json.required_count("componentType"), UINT32_MAX));
-    if (!component_size(out.component_type)) fail("{}: the component type {} is unknown", out.where, out.component_type);
+    if (!component_size(out.component_type))
+        fail("{}: the component type {} is unknown", out.where, out.component_type);
     out.normalized = json.flag("normalized", false);
     return out;
 }
 
-GltfFile::Elements GltfFile::elements(const JsonView& json, const Accessor& accessor, uint64_t count, size_t element_size) {
+GltfFile::Elements GltfFile::elements(const JsonView& json, const Accessor& accessor, uint64_t count,
+                                      size_t element_size) {
     const std::optional<uint32_t> index = json.index("bufferView", views_.size(), "buffer views");
     if (!index) return {};
     const std::span<const uint8_t> data = view(*index);
     const uint64_t stride_given = views_[*index].count("byteStride", 0);
     if (stride_given && (stride_given < element_size || stride_given > 252))
-        fail("{}: byteStride {} of {} is out of range [{}, 252]", json.where(), stride_given, views_[*index].where(), element_size);
+        fail("{}: byteStride {} of {} is out of range [{}, 252]", json.where(), stride_given, views_[*index].where(),
+             element_size);
     const size_t stride = stride_given ? stride_given : element_size;
     const uint64_t offset = json.count("byteOffset", 0);
     const uint64_t needed = count ? offset + (count - 1) * stride + element_size : 0;
     if (needed > data.size())
-        fail("{}: needs {} bytes ({} elements, offset {}, stride {}), its buffer view has {}", accessor.where, needed, count, offset, stride, data.size());
+        fail("{}: needs {} bytes ({} elements, offset {}, stride {}), its buffer view has {}", accessor.where, needed,
+             count, offset, stride, data.size());
     return {data.subspan(std::min<uint64_t>(offset, data.size())), stride};
 }
 
@@ -172,7 +197,8 @@ GltfFile::Elements GltfFile::elements(const JsonView& json, const Accessor& acce
 void GltfFile::spend(const Accessor& accessor) {
     constexpr uint64_t limit = uint64_t(1) << 31;
     decoded_ += uint64_t(accessor.count) * accessor.components;
-    if (decoded_ > limit) fail("{}: the file's accessors hold more than {} numbers in all; split the scene", accessor.where, limit);
+    if (decoded_ > limit)
+        fail("{}: the file's accessors hold more than {} numbers in all; split the scene", accessor.where, limit);
 }
 
 template <typename Store>
@@ -191,17 +217,22 @@ void GltfFile::read(uint32_t index, const Accessor& accessor, Store store) {
 template <typename Store>
 void GltfFile::read_sparse(const JsonView& json, const Accessor& accessor, Store store) {
     const uint64_t count = json.required_count("count");
-    if (count > accessor.count) fail("{}: {} sparse elements, the accessor has {}", json.where(), count, accessor.count);
+    if (count > accessor.count)
+        fail("{}: {} sparse elements, the accessor has {}", json.where(), count, accessor.count);
     const JsonView at = json.object("indices"), values = json.object("values");
     const uint64_t type = at.required_count("componentType");
-    if (type != 5121 && type != 5123 && type != 5125) fail("{}: component type {} is no unsigned integer", at.where(), type);
-    const size_t size = component_size(accessor.component_type), index_size = component_size(static_cast<uint32_t>(type));
+    if (type != 5121 && type != 5123 && type != 5125)
+        fail("{}: component type {} is no unsigned integer", at.where(), type);
+    const size_t size = component_size(accessor.component_type),
+                 index_size = component_size(static_cast<uint32_t>(type));
     const Elements indices = elements(at, accessor, count, index_size);
     const Elements data = elements(values, accessor, count, size * accessor.components);
-    if (count && (indices.data.empty() || data.data.empty())) fail("{}: \"bufferView\" of the sparse indices or values is missing", json.where());
+    if (count && (indices.data.empty() || data.data.empty()))
+        fail("{}: \"bufferView\" of the sparse indices or values is missing", json.where());
     for (uint64_t i = 0; i < count; ++i) {
         const size_t element = load_index(indices.data.data() + i * indices.stride, static_cast<uint32_t>(type));
-        if (element >= accessor.count) fail("{}: sparse index {} is {}, the accessor has {} elements", json.where(), i, element, accessor.count);
+        if (element >= accessor.count)
+            fail("{}: sparse index {} is {}, the accessor has {} elements", json.where(), i, element, accessor.count);
         for (size_t c = 0; c < accessor.components; ++c)
             store(element * accessor.components + c, data.data.data() + i * data.stride + c * size);
     }
@@ -220,17 +251,21 @@ void check_unbacked(const JsonView& json, const GltfFile::Accessor& accessor) {
 std::vector<float> GltfFile::floats(uint32_t index) {
     const Accessor from = accessor(index);
     check_unbacked(accessors_[index], from);
-    elements(accessors_[index], from, from.count, size_t(component_size(from.component_type)) * from.components);  // before allocating
+    elements(accessors_[index], from, from.count,
+             size_t(component_size(from.component_type)) * from.components);  // before allocating
     spend(from);
     std::vector<float> out(size_t(from.count) * from.components, 0.f);
-    read(index, from, [&](size_t i, const uint8_t* data) { out[i] = load_float(data, from.component_type, from.normalized); });
+    read(index, from,
+         [&](size_t i, const uint8_t* data) { out[i] = load_float(data, from.component_type, from.normalized); });
     return out;
 }
 
 std::vector<uint32_t> GltfFile::integers(uint32_t index) {
     const Accessor from = accessor(index);
-    if (from.components != 1 || (from.component_type != 5121 && from.component_type != 5123 && from.component_type != 5125))
-        fail("{}: indices must be SCALAR of unsigned bytes, shorts or ints, not {} components of type {}", from.where, from.components, from.component_type);
+    if (from.components != 1 ||
+        (from.component_type != 5121 && from.component_type != 5123 && from.component_type != 5125))
+        fail("{}: indices must be SCALAR of unsigned bytes, shorts or ints, not {} components of type {}", from.where,
+             from.components, from.component_type);
     check_unbacked(accessors_[index], from);
     elements(accessors_[index], from, from.count, component_size(from.component_type));  // before allocating
     spend(from);
@@ -245,7 +280,8 @@ std::span<const uint8_t> GltfFile::image_bytes(uint32_t index) {
     std::optional<Bytes>& loaded = loaded_images_[index];
     if (!loaded) {
         const std::string uri = json.text("uri", ""), where = json.where() + ".uri";
-        loaded = is_data_uri(uri) ? decode_data_uri(uri, where) : read_file(resolve_inside(folder_, percent_decode(uri, where), where), where);
+        loaded = is_data_uri(uri) ? decode_data_uri(uri, where)
+                                  : read_file(resolve_inside(folder_, percent_decode(uri, where), where), where);
     }
     return *loaded;
 }

@@ -17,16 +17,21 @@ float unit(double value) {
 
 Texture::Wrap wrap_mode(const JsonView& sampler, const char* key) {
     switch (sampler.count(key, 10497)) {
-        case 33071: return Texture::Wrap::clamp;
-        case 33648: return Texture::Wrap::mirror;
-        case 10497: return Texture::Wrap::repeat;
-        default: fail("{}.{}: {} is no wrap mode", sampler.where(), key, sampler.count(key, 0));
+        case 33071:
+            return Texture::Wrap::clamp;
+        case 33648:
+            return Texture::Wrap::mirror;
+        case 10497:
+            return Texture::Wrap::repeat;
+        default:
+            fail("{}.{}: {} is no wrap mode", sampler.where(), key, sampler.count(key, 0));
     }
 }
 
 class MaterialReader {
   public:
-    MaterialReader(GltfLoader& loader, const JsonView& json) : loader_(loader), json_(json), extensions_(json.object("extensions")) {}
+    MaterialReader(GltfLoader& loader, const JsonView& json)
+        : loader_(loader), json_(json), extensions_(json.object("extensions")) {}
 
     void read() {
         material_.name = json_.text("name", "");
@@ -61,7 +66,8 @@ class MaterialReader {
 
     void read_emission() {
         const JsonView strength = extensions_.object("KHR_materials_emissive_strength");
-        material_.emissive = to_vec3(json_.vector<3>("emissiveFactor", {0, 0, 0})) * static_cast<float>(strength.number("emissiveStrength", 1));
+        material_.emissive = to_vec3(json_.vector<3>("emissiveFactor", {0, 0, 0})) *
+                             static_cast<float>(strength.number("emissiveStrength", 1));
         material_.emissive = glm::max(material_.emissive, glm::vec3(0));
         if (const auto mean = mean_of(json_, "emissiveTexture", true)) {
             material_.emissive *= glm::vec3(*mean);
@@ -70,13 +76,15 @@ class MaterialReader {
     }
 
     void read_transmission() {
-        const JsonView transmission = extensions_.object("KHR_materials_transmission"), volume = extensions_.object("KHR_materials_volume");
+        const JsonView transmission = extensions_.object("KHR_materials_transmission"),
+                       volume = extensions_.object("KHR_materials_volume");
         material_.transmission = unit(transmission.number("transmissionFactor", 0));
         if (const auto mean = mean_of(transmission, "transmissionTexture", false)) {
             material_.transmission *= mean->x;
             ++loader_.ignored["{} transmission textures replaced by their mean"];
         }
-        // The extension allows 0 for "reflects everything", which no ray can be bent by; below 1 there is no such medium.
+        // The extension allows 0 for "reflects everything", which no ray can be bent by; below 1 there is no such
+        // medium.
         material_.ior = std::max(1.f, static_cast<float>(extensions_.object("KHR_materials_ior").number("ior", 1.5)));
         material_.thickness = std::max(0.f, static_cast<float>(volume.number("thicknessFactor", 0)));
         ignore(volume, "thicknessTexture", "{} thickness textures ignored");
@@ -98,14 +106,17 @@ class MaterialReader {
         uv_.scale = {scale[0], scale[1]};
         uv_.rotation = static_cast<float>(transform.number("rotation", 0));
         uv_.used = image.has_value();
-        if (image) material_.base_color_texture = texture_id(*image, info.required_index("index", loader_.textures.size(), "textures"));
+        if (image)
+            material_.base_color_texture =
+                texture_id(*image, info.required_index("index", loader_.textures.size(), "textures"));
     }
 
     /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
     void ignore(const JsonView& parent, const char* key, const char* sentence) {
         if (!parent.has(key)) return;
         ++loader_.ignored[sentence];
-        if (const auto image = image_of(parent.object(key))) check_image(loader_.file.image_bytes(*image), where(*image));
+        if (const auto image = image_of(parent.object(key)))
+            check_image(loader_.file.image_bytes(*image), where(*image));
     }
 
     /// The image that a textureInfo shows; none (with a note) where only an extension's format is offered.
@@ -117,11 +128,13 @@ class MaterialReader {
     }
 
     int texture_id(uint32_t image, uint32_t texture) {
-        const std::optional<uint32_t> index = loader_.textures[texture].index("sampler", loader_.samplers.size(), "samplers");
+        const std::optional<uint32_t> index =
+            loader_.textures[texture].index("sampler", loader_.samplers.size(), "samplers");
         const JsonView sampler = index ? loader_.samplers[*index] : JsonView(nullptr, "default sampler");
         const Texture::Wrap u = wrap_mode(sampler, "wrapS"), v = wrap_mode(sampler, "wrapT");
         const bool nearest = sampler.count("magFilter", 9729) == 9728;
-        const auto [entry, added] = loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
+        const auto [entry, added] =
+            loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
         if (added) {
             const JsonView& json = loader_.file.image(image);
             Texture decoded = decode_image(loader_.file.image_bytes(image), where(image));

@@ -12,7 +12,8 @@ enum Mode : uint64_t { triangles_mode = 4, strip_mode = 5, fan_mode = 6 };
 
 class PrimitiveReader {
   public:
-    PrimitiveReader(GltfLoader& loader, const JsonView& json) : loader_(loader), json_(json), attributes_(json.object("attributes")) {}
+    PrimitiveReader(GltfLoader& loader, const JsonView& json)
+        : loader_(loader), json_(json), attributes_(json.object("attributes")) {}
 
     /// False where the primitive has no triangles to show (points, lines, no positions).
     bool read(Primitive& out) {
@@ -26,7 +27,8 @@ class PrimitiveReader {
             ++loader_.ignored["{} primitives without positions dropped"];
             return false;
         }
-        out.material = json_.index("material", loader_.scene.materials.size() - 1, "materials").value_or(static_cast<uint32_t>(loader_.scene.materials.size() - 1));
+        out.material = json_.index("material", loader_.scene.materials.size() - 1, "materials")
+                           .value_or(static_cast<uint32_t>(loader_.scene.materials.size() - 1));
         out.positions = vectors<glm::vec3>("POSITION");
         check_positions(out);
         read_triangles(out, mode);
@@ -41,7 +43,8 @@ class PrimitiveReader {
         const uint32_t accessor = attributes_.required_index(name, loader_.file.accessor_count(), "accessors");
         const GltfFile::Accessor info = loader_.file.accessor(accessor);
         constexpr auto components = static_cast<uint32_t>(Vector::length());
-        if (info.components != components) fail("{}: {} needs {} components, {} has {}", json_.where(), name, components, info.where, info.components);
+        if (info.components != components)
+            fail("{}: {} needs {} components, {} has {}", json_.where(), name, components, info.where, info.components);
         const std::vector<float> values = loader_.file.floats(accessor);
         std::vector<Vector> out(info.count);
         for (size_t i = 0; i < out.size(); ++i)
@@ -50,14 +53,16 @@ class PrimitiveReader {
     }
 
     void check_count(const char* name, size_t count, const Primitive& out) const {
-        if (count != out.positions.size()) fail("{}: {} has {} elements, POSITION has {}", json_.where(), name, count, out.positions.size());
+        if (count != out.positions.size())
+            fail("{}: {} has {} elements, POSITION has {}", json_.where(), name, count, out.positions.size());
     }
 
     void check_positions(const Primitive& out) const {
         for (size_t i = 0; i < out.positions.size(); ++i) {
             const glm::vec3& p = out.positions[i];
             if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                fail("{}: vertex {} is at ({}, {}, {}); repair the mesh, positions must be finite", json_.where(), i, p.x, p.y, p.z);
+                fail("{}: vertex {} is at ({}, {}, {}); repair the mesh, positions must be finite", json_.where(), i,
+                     p.x, p.y, p.z);
         }
     }
 
@@ -67,7 +72,8 @@ class PrimitiveReader {
             corners = loader_.file.integers(*accessor);
             for (size_t i = 0; i < corners.size(); ++i)
                 if (corners[i] >= out.positions.size())
-                    fail("{}: index {} is {}, the primitive has {} vertices", json_.where(), i, corners[i], out.positions.size());
+                    fail("{}: index {} is {}, the primitive has {} vertices", json_.where(), i, corners[i],
+                         out.positions.size());
         } else {
             corners.resize(out.positions.size());
             for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<uint32_t>(i);
@@ -80,7 +86,8 @@ class PrimitiveReader {
             if (mode == strip_mode) out.triangles[i] = {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]};
             if (mode == fan_mode) out.triangles[i] = {corners[i + 1], corners[i + 2], corners[0]};
         }
-        if (mode == triangles_mode && corners.size() % 3) ++loader_.ignored["{} primitives with one or two indices too many"];
+        if (mode == triangles_mode && corners.size() % 3)
+            ++loader_.ignored["{} primitives with one or two indices too many"];
     }
 
     void read_attributes(Primitive& out) {
@@ -90,8 +97,10 @@ class PrimitiveReader {
         }
         read_uvs(out);
         read_colors(out);
-        if (out.normals.empty()) make_flat(out);
-        else if (const size_t repaired = repair_normals(out)) loader_.ignored["{} normals without direction replaced"] += repaired;
+        if (out.normals.empty())
+            make_flat(out);
+        else if (const size_t repaired = repair_normals(out))
+            loader_.ignored["{} normals without direction replaced"] += repaired;
     }
 
     void read_uvs(Primitive& out) {
@@ -136,7 +145,8 @@ void GltfLoader::read_mesh(uint32_t index) {
         Primitive out;
         if (!PrimitiveReader(*this, primitive).read(out)) continue;
         triangles += out.triangles.size();
-        if (triangles > (uint64_t(1) << 28)) fail("{}: more than {} triangles so far; split the scene", primitive.where(), uint64_t(1) << 28);
+        if (triangles > (uint64_t(1) << 28))
+            fail("{}: more than {} triangles so far; split the scene", primitive.where(), uint64_t(1) << 28);
         mesh.primitives.push_back(std::move(out));
     }
 }

@@ -39,7 +39,9 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
 class NodeReader {
   public:
     explicit NodeReader(GltfLoader& loader)
-        : loader_(loader), visited_(loader.nodes.size()), cameras_(loader.file.root().objects("cameras")),
+        : loader_(loader),
+          visited_(loader.nodes.size()),
+          cameras_(loader.file.root().objects("cameras")),
           lights_(loader.file.root().object("extensions").object("KHR_lights_punctual").objects("lights")) {}
 
     void read() {
@@ -51,7 +53,9 @@ class NodeReader {
             const auto [index, parent] = todo.back();
             todo.pop_back();
             const JsonView& json = loader_.nodes[index];
-            if (visited_[index]) fail("{}: the node is reached twice: it has two parents or is part of a cycle; repair the hierarchy", json.where());
+            if (visited_[index])
+                fail("{}: the node is reached twice: it has two parents or is part of a cycle; repair the hierarchy",
+                     json.where());
             visited_[index] = true;
             const int self = add_node(json, index, parent);
             const std::vector<uint32_t> children = json.indices("children", loader_.nodes.size(), "nodes");
@@ -83,9 +87,11 @@ class NodeReader {
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
         check_finite(world, json.where());
         if (const auto mesh = json.index("mesh", loader_.meshes.size(), "meshes")) node.mesh = show_mesh(*mesh);
-        if (const auto camera = json.index("camera", cameras_.size(), "cameras")) node.camera = add_camera(cameras_[*camera], node, world);
+        if (const auto camera = json.index("camera", cameras_.size(), "cameras"))
+            node.camera = add_camera(cameras_[*camera], node, world);
         const JsonView light = json.object("extensions").object("KHR_lights_punctual");
-        if (const auto i = light.index("light", lights_.size(), "lights")) node.light = add_light(lights_[*i], node, world);
+        if (const auto i = light.index("light", lights_.size(), "lights"))
+            node.light = add_light(lights_[*i], node, world);
         if (json.has("skin")) ++loader_.ignored["{} skinned nodes shown in their rest pose"];
         loader_.scene.nodes.push_back(std::move(node));
         worlds_.push_back(world);
@@ -114,10 +120,13 @@ class NodeReader {
         const std::string type = json.text("type", "");
         if (type == "perspective") {
             camera.vertical_fov = static_cast<float>(json.object("perspective").required_number("yfov"));
-            if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f)) fail("{}: yfov {} is outside of (0, pi)", json.where(), camera.vertical_fov);
+            if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
+                fail("{}: yfov {} is outside of (0, pi)", json.where(), camera.vertical_fov);
         } else if (type == "orthographic") {
-            camera.orthographic_height = 2 * std::abs(static_cast<float>(json.object("orthographic").number("ymag", 0)));
-            if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", json.where());
+            camera.orthographic_height =
+                2 * std::abs(static_cast<float>(json.object("orthographic").number("ymag", 0)));
+            if (camera.orthographic_height == 0)
+                fail("{}: ymag of the orthographic camera is 0 or missing", json.where());
         } else {
             fail("{}: the type \"{}\" is neither perspective nor orthographic", json.where(), printable(type, 20));
         }
@@ -129,9 +138,12 @@ class NodeReader {
         Light light;
         light.name = json.text("name", node.name);
         const std::string type = json.text("type", "");
-        if (type == "point") light.kind = Light::Kind::point;
-        else if (type == "spot") light.kind = Light::Kind::spot;
-        else if (type != "directional") fail("{}: the light type \"{}\" is unknown", json.where(), printable(type, 20));
+        if (type == "point")
+            light.kind = Light::Kind::point;
+        else if (type == "spot")
+            light.kind = Light::Kind::spot;
+        else if (type != "directional")
+            fail("{}: the light type \"{}\" is unknown", json.where(), printable(type, 20));
         const auto color = json.vector<3>("color", {1, 1, 1});
         light.color = glm::vec3(color[0], color[1], color[2]) * static_cast<float>(json.number("intensity", 1));
         light.position = glm::vec3(world[3]);
@@ -150,7 +162,8 @@ class NodeReader {
         glm::vec3 lower{INFINITY}, upper{-INFINITY};
         for (size_t i = 0; i < worlds_.size(); ++i) {
             if (loader_.scene.nodes[i].mesh < 0) continue;
-            for (const Primitive& primitive : loader_.scene.meshes[static_cast<size_t>(loader_.scene.nodes[i].mesh)].primitives)
+            for (const Primitive& primitive :
+                 loader_.scene.meshes[static_cast<size_t>(loader_.scene.nodes[i].mesh)].primitives)
                 for (const glm::vec3& p : primitive.positions) {
                     const glm::vec3 at = glm::vec3(worlds_[i] * glm::vec4(p, 1));
                     lower = glm::min(lower, at);

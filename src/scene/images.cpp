@@ -29,10 +29,12 @@ namespace {
 
 [[noreturn]] void fail_image(const std::string& where, size_t size) {
     const char* reason = stbi_failure_reason();
-    fail("{}: {} bytes that are no PNG or JPEG image ({}); repair or re-export the image", where, size, reason ? reason : "unknown");
+    fail("{}: {} bytes that are no PNG or JPEG image ({}); repair or re-export the image", where, size,
+         reason ? reason : "unknown");
 }
 
-/// stb_image fills the missing part of a cut-off JPEG with grey; a whole one ends with EOI (FF D9) after its last SOS (FF DA).
+/// stb_image fills the missing part of a cut-off JPEG with grey; a whole one ends with EOI (FF D9) after its last SOS
+/// (FF DA).
 bool is_truncated_jpeg(std::span<const uint8_t> bytes) {
     if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
     for (size_t i = bytes.size() - 1; i > 1; --i)
@@ -46,18 +48,22 @@ void check_image(std::span<const uint8_t> bytes, const std::string& where) {
     int width = 0, height = 0, channels = 0;
     if (bytes.empty()) fail("{}: the image is empty", where);
     if (bytes.size() > INT_MAX) fail("{}: the image has {} bytes, more than 2 GiB", where, bytes.size());
-    if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels)) fail_image(where, bytes.size());
+    if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
+        fail_image(where, bytes.size());
     if (width <= 0 || height <= 0 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
-        fail("{}: the image says it has {}x{} pixels; at most {} on a side are read", where, width, height, STBI_MAX_DIMENSIONS);
+        fail("{}: the image says it has {}x{} pixels; at most {} on a side are read", where, width, height,
+             STBI_MAX_DIMENSIONS);
 }
 
 Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
     check_image(bytes, where);
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-        stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4), &stbi_image_free);
+        stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
+        &stbi_image_free);
     if (!pixels) fail_image(where, bytes.size());
-    if (is_truncated_jpeg(bytes)) fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
+    if (is_truncated_jpeg(bytes))
+        fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
     Texture texture;
     texture.width = static_cast<uint32_t>(width);
     texture.height = static_cast<uint32_t>(height);
@@ -73,7 +79,8 @@ glm::vec4 mean_texel(const Texture& texture, bool srgb) {
         decoded[i] = !srgb ? c : c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     }
     glm::dvec4 sum{0};
-    for (const uint32_t t : texture.texels) sum += glm::dvec4(decoded[t & 255], decoded[t >> 8 & 255], decoded[t >> 16 & 255], (t >> 24) / 255.0);
+    for (const uint32_t t : texture.texels)
+        sum += glm::dvec4(decoded[t & 255], decoded[t >> 8 & 255], decoded[t >> 16 & 255], (t >> 24) / 255.0);
     return glm::vec4(sum / std::max(1.0, double(texture.texels.size())));
 }
 

@@ -28,7 +28,8 @@ std::vector<JsonView> JsonView::objects(const char* key) const {
     views.reserve(value->size());
     for (size_t i = 0; i < value->size(); ++i) {
         views.emplace_back(&(*value)[i], fmt::format("{}.{}[{}]", where_, key, i));
-        if (!(*value)[i].is_object()) fail("{}: is {}, must be an object", views.back().where(), (*value)[i].type_name());
+        if (!(*value)[i].is_object())
+            fail("{}: is {}, must be an object", views.back().where(), (*value)[i].type_name());
     }
     return views;
 }
@@ -98,7 +99,8 @@ float JsonView::checked_float(double value, const char* key) const {
 uint64_t JsonView::whole(const json& value, const std::string& where) const {
     if (!value.is_number()) fail("{}: is {}, must be a whole number", where, value.type_name());
     const double number = value.get<double>();
-    if (!(number >= 0 && number <= 9007199254740992.0) || number != std::floor(number)) fail("{}: {} is no whole number from 0 up", where, number);
+    if (!(number >= 0 && number <= 9007199254740992.0) || number != std::floor(number))
+        fail("{}: {} is no whole number from 0 up", where, number);
     return static_cast<uint64_t>(number);
 }
 

@@ -13,8 +13,8 @@
 
 namespace peelray {
 
-/// A checked view of a JSON value. A value of the wrong type is an Error that names file and place; a missing one gives the
-/// default. The view does not own the JSON.
+/// A checked view of a JSON value. A value of the wrong type is an Error that names file and place; a missing one gives
+/// the default. The view does not own the JSON.
 class JsonView {
   public:
     JsonView(const nlohmann::json* value, std::string where) : value_(value), where_(std::move(where)) {}

@@ -53,10 +53,10 @@ std::optional<uint64_t> whole(std::string_view word) {
 }
 
 struct Property {
-    size_t size = 0;                  ///< bytes of one value
+    size_t size = 0;  ///< bytes of one value
     bool floating = false, is_signed = false;
-    size_t count_size = 0;            ///< of a list's length; 0: no list
-    bool indices = false;             ///< a list of vertex indices
+    size_t count_size = 0;  ///< of a list's length; 0: no list
+    bool indices = false;   ///< a list of vertex indices
 };
 
 struct Element {
@@ -75,11 +75,17 @@ struct PlyHeader {
 bool set_type(Property& property, std::string_view type) {
     property.is_signed = type[0] != 'u';
     property.floating = type == "float" || type == "float32" || type == "double" || type == "float64";
-    if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") property.size = 1;
-    else if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") property.size = 2;
-    else if (type == "int" || type == "uint" || type == "int32" || type == "uint32" || type == "float" || type == "float32") property.size = 4;
-    else if (type == "double" || type == "float64") property.size = 8;
-    else return false;
+    if (type == "char" || type == "uchar" || type == "int8" || type == "uint8")
+        property.size = 1;
+    else if (type == "short" || type == "ushort" || type == "int16" || type == "uint16")
+        property.size = 2;
+    else if (type == "int" || type == "uint" || type == "int32" || type == "uint32" || type == "float" ||
+             type == "float32")
+        property.size = 4;
+    else if (type == "double" || type == "float64")
+        property.size = 8;
+    else
+        return false;
     return true;
 }
 
@@ -88,11 +94,13 @@ Property parse_property(Words& words, const std::string& name) {
     std::string_view type = words.next(false);
     if (type == "list") {
         const std::string_view count_type = words.next(false);
-        if (count_type.empty() || !set_type(length, count_type)) fail("{}: the PLY header has the unknown type \"{}\"", name, printable(count_type, 20));
+        if (count_type.empty() || !set_type(length, count_type))
+            fail("{}: the PLY header has the unknown type \"{}\"", name, printable(count_type, 20));
         property.count_size = length.size;
         type = words.next(false);
     }
-    if (type.empty() || !set_type(property, type)) fail("{}: the PLY header has the unknown type \"{}\"", name, printable(type, 20));
+    if (type.empty() || !set_type(property, type))
+        fail("{}: the PLY header has the unknown type \"{}\"", name, printable(type, 20));
     const std::string_view what = words.next(false);
     property.indices = property.count_size && (what == "vertex_indices" || what == "vertex_index");
     return property;
@@ -149,7 +157,8 @@ class PlyBody {
         uint64_t bits;
         std::memcpy(&bits, raw, 8);
         const bool negative = property.is_signed && (bits >> (size * 8 - 1) & 1);
-        return negative ? static_cast<double>(bits) - std::ldexp(1.0, static_cast<int>(size * 8)) : static_cast<double>(bits);
+        return negative ? static_cast<double>(bits) - std::ldexp(1.0, static_cast<int>(size * 8))
+                        : static_cast<double>(bits);
     }
 
     size_t left() const { return ascii_ ? body_.size() - words_.position() : body_.size() - at_; }
@@ -161,12 +170,14 @@ class PlyBody {
     size_t at_ = 0;
 };
 
-void check_list(PlyBody& body, const Property& property, const Element& element, uint64_t item, uint64_t vertices, const std::string& name) {
+void check_list(PlyBody& body, const Property& property, const Element& element, uint64_t item, uint64_t vertices,
+                const std::string& name) {
     Property length;
     const std::optional<double> count = body.value(length, property.count_size, false);
     const double available = static_cast<double>(body.left());
     if (!count || !(*count >= 0) || *count > available)
-        fail("{}: {} {} claims a list of {} values, {} bytes are left; the file is truncated or damaged", name, element.name, item, count.value_or(0), available);
+        fail("{}: {} {} claims a list of {} values, {} bytes are left; the file is truncated or damaged", name,
+             element.name, item, count.value_or(0), available);
     for (uint64_t i = 0; i < static_cast<uint64_t>(*count); ++i) {
         const std::optional<double> value = body.value(property, property.size, property.floating);
         if (!value) fail("{}: the file ends in {} {} of {}; it is truncated", name, element.name, item, element.count);
@@ -185,7 +196,9 @@ size_t check_ply(std::span<const uint8_t> bytes, const std::string& name) {
         fail("{}: the PLY format \"{}\" is unknown", name, printable(header.format, 30));
     PlyBody body(text.substr(header.size), header.format);
     for (const Element& element : header.elements) {
-        if (element.count > bytes.size()) fail("{}: claims {} elements \"{}\" in a file of {} bytes", name, element.count, printable(element.name, 40), bytes.size());
+        if (element.count > bytes.size())
+            fail("{}: claims {} elements \"{}\" in a file of {} bytes", name, element.count,
+                 printable(element.name, 40), bytes.size());
         for (uint64_t item = 0; item < element.count; ++item)
             for (const Property& property : element.properties) {
                 if (property.count_size) {
@@ -203,21 +216,27 @@ void check_off(std::span<const uint8_t> bytes, const std::string& name) {
     Words words(text);
     const std::string_view magic = words.next(true);
     if (!magic.ends_with("OFF")) fail("{}: not an OFF file: it does not begin with \"OFF\"", name);
-    const std::optional<uint64_t> vertices = whole(words.next(true)), faces = whole(words.next(true)), edges = whole(words.next(true));
-    if (!vertices || !faces || !edges) fail("{}: the OFF header does not give the numbers of vertices, faces and edges", name);
+    const std::optional<uint64_t> vertices = whole(words.next(true)), faces = whole(words.next(true)),
+                                  edges = whole(words.next(true));
+    if (!vertices || !faces || !edges)
+        fail("{}: the OFF header does not give the numbers of vertices, faces and edges", name);
     if (*vertices > bytes.size() / 2 || *faces > bytes.size() / 2)
         fail("{}: claims {} vertices and {} faces in a file of {} bytes", name, *vertices, *faces, bytes.size());
     if (magic != "OFF") return;  // with normals, colours or texture coordinates per vertex: only the counts are checked
     for (uint64_t i = 0; i < *vertices * 3; ++i)
-        if (words.next(true).empty()) fail("{}: the file ends in vertex {} of {}; it is truncated", name, i / 3, *vertices);
+        if (words.next(true).empty())
+            fail("{}: the file ends in vertex {} of {}; it is truncated", name, i / 3, *vertices);
     words.line();
     for (uint64_t face = 0; face < *faces; ++face) {
         const std::optional<uint64_t> corners = whole(words.next(true));
-        if (!corners || *corners > bytes.size()) fail("{}: face {} of {} is missing or has no count; the file is truncated or damaged", name, face, *faces);
+        if (!corners || *corners > bytes.size())
+            fail("{}: face {} of {} is missing or has no count; the file is truncated or damaged", name, face, *faces);
         for (uint64_t i = 0; i < *corners; ++i) {
             const std::string_view word = words.next(true);
             const std::optional<uint64_t> index = whole(word);
-            if (!index || *index >= *vertices) fail("{}: face {} has index \"{}\", the file has {} vertices", name, face, printable(word, 20), *vertices);
+            if (!index || *index >= *vertices)
+                fail("{}: face {} has index \"{}\", the file has {} vertices", name, face, printable(word, 20),
+                     *vertices);
         }
         words.line();  // a colour may follow
     }

@@ -114,7 +114,8 @@ void make_flat(Primitive& p) {
     p.normals.clear();
     unshare(p);
     p.normals.resize(p.positions.size());
-    for (const glm::uvec3& t : p.triangles) p.normals[t.x] = p.normals[t.y] = p.normals[t.z] = unit_or(area_vector(p, t), any_normal);
+    for (const glm::uvec3& t : p.triangles)
+        p.normals[t.x] = p.normals[t.y] = p.normals[t.z] = unit_or(area_vector(p, t), any_normal);
 }
 
 void make_smooth(Primitive& p, float crease) {

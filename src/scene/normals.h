@@ -8,8 +8,9 @@ namespace peelray {
 /// One vertex per triangle corner with the triangle's own normal (what glTF asks for where normals are missing).
 void make_flat(Primitive& primitive);
 
-/// Normals from the adjacent triangles, weighted by the corner's angle; edges sharper than `crease` (radians) stay hard.
-/// Corners at the same position count as one vertex. Vertices are split where normals differ; triangles keep their order.
+/// Normals from the adjacent triangles, weighted by the corner's angle; edges sharper than `crease` (radians) stay
+/// hard. Corners at the same position count as one vertex. Vertices are split where normals differ; triangles keep
+/// their order.
 void make_smooth(Primitive& primitive, float crease);
 
 /// Merges vertices that agree in every attribute. Triangles keep their order.

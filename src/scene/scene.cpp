@@ -14,9 +14,11 @@ namespace {
 
 Scene load_file(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
-    if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off") return load_assimp(path, extension);
+    if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off")
+        return load_assimp(path, extension);
     fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
          printable(path.string(), 1000), printable(extension, 20));
 }
@@ -25,7 +27,8 @@ bool has_triangles(const Scene& scene) {
     return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
         if (node.mesh < 0) return false;
         const std::vector<Primitive>& primitives = scene.meshes[static_cast<size_t>(node.mesh)].primitives;
-        return std::any_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return !p.triangles.empty(); });
+        return std::any_of(primitives.begin(), primitives.end(),
+                           [](const Primitive& p) { return !p.triangles.empty(); });
     });
 }
 

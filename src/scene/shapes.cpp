@@ -66,8 +66,8 @@ Material metal(const char* name, const glm::vec3& color) {
 
 Primitive sphere(const glm::vec3& center, float radius, uint32_t n) {
     Primitive out;
-    // Equal angles instead of equal lengths on the cube: squares of nearly equal size on the sphere. Exactly symmetric, so
-    // that neighbouring faces meet in the same points and the body is closed.
+    // Equal angles instead of equal lengths on the cube: squares of nearly equal size on the sphere. Exactly symmetric,
+    // so that neighbouring faces meet in the same points and the body is closed.
     std::vector<float> spread(n + 1, 0.f);
     for (uint32_t k = 0; 2 * k < n; ++k) {
         const float angle = std::numbers::pi_v<float> / 4 * (1 - 2 * static_cast<float>(k) / static_cast<float>(n));
@@ -98,18 +98,21 @@ Primitive sphere(const glm::vec3& center, float radius, uint32_t n) {
     return out;
 }
 
-Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments, uint32_t tube_segments) {
+Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments,
+                uint32_t tube_segments) {
     Primitive out;
     constexpr float turn = 2 * std::numbers::pi_v<float>;
     for (uint32_t i = 0; i < ring_segments; ++i)
         for (uint32_t j = 0; j < tube_segments; ++j) {
-            const float a = turn * static_cast<float>(i) / static_cast<float>(ring_segments), b = turn * static_cast<float>(j) / static_cast<float>(tube_segments);
+            const float a = turn * static_cast<float>(i) / static_cast<float>(ring_segments),
+                        b = turn * static_cast<float>(j) / static_cast<float>(tube_segments);
             const glm::vec3 outwards(std::cos(a), 0, std::sin(a));
             const glm::vec3 normal = outwards * std::cos(b) + glm::vec3(0, std::sin(b), 0);
             out.normals.push_back(glm::normalize(normal));
             out.positions.push_back(center + ring_radius * outwards + tube_radius * normal);
             const uint32_t next_i = (i + 1) % ring_segments, next_j = (j + 1) % tube_segments;
-            const uint32_t p = i * tube_segments + j, q = i * tube_segments + next_j, r = next_i * tube_segments + j, s = next_i * tube_segments + next_j;
+            const uint32_t p = i * tube_segments + j, q = i * tube_segments + next_j, r = next_i * tube_segments + j,
+                           s = next_i * tube_segments + next_j;
             out.triangles.push_back({p, q, s});
             out.triangles.push_back({p, s, r});
         }
@@ -133,8 +136,10 @@ Primitive box(const glm::vec3& lower, const glm::vec3& upper) {
         u[(axis + 1) % 3] = upper[(axis + 1) % 3] - lower[(axis + 1) % 3];
         v[(axis + 2) % 3] = upper[(axis + 2) % 3] - lower[(axis + 2) % 3];
         glm::vec3 corner = lower;
-        if (face % 2) corner[axis] = upper[axis];
-        else std::swap(u, v);
+        if (face % 2)
+            corner[axis] = upper[axis];
+        else
+            std::swap(u, v);
         const Primitive side = parallelogram(corner, u, v);
         const auto first = static_cast<uint32_t>(out.positions.size());
         out.positions.insert(out.positions.end(), side.positions.begin(), side.positions.end());

@@ -35,7 +35,8 @@ Material metal(const char* name, const glm::vec3& color);
 /// A sphere as a subdivided cube (no poles, no slivers) with n×n squares a side.
 Primitive sphere(const glm::vec3& center, float radius, uint32_t n);
 /// A torus around the y axis.
-Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments, uint32_t tube_segments);
+Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments,
+                uint32_t tube_segments);
 /// A box with sharp edges.
 Primitive box(const glm::vec3& lower, const glm::vec3& upper);
 /// Two triangles: corner, corner + u, corner + u + v, corner + v; front towards u × v; uv from 0 to `repeat`.

@@ -1,5 +1,5 @@
-// Martin Newell's teapot (1975): the control points of its 32 bicubic Bézier patches, with the lid, body, rim and bottom
-// written as the four profiles of revolution that they are and handle and spout as one half of a mirrored pair.
+// Martin Newell's teapot (1975): the control points of its 32 bicubic Bézier patches, with the lid, body, rim and
+// bottom written as the four profiles of revolution that they are and handle and spout as one half of a mirrored pair.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -15,19 +15,19 @@ using Profile = std::array<glm::dvec2, 4>;  ///< radius, height
 
 // From the top of the lid down, so that (along the profile) × (around) points outwards everywhere.
 constexpr std::array<Profile, 6> profiles = {{
-    {{{0.0, 3.15}, {0.8, 3.15}, {0.0, 2.85}, {0.2, 2.7}}},               // knob
-    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},                // lid
-    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},    // rim
-    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},              // upper body
-    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},              // lower body
-    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},             // bottom
+    {{{0.0, 3.15}, {0.8, 3.15}, {0.0, 2.85}, {0.2, 2.7}}},             // knob
+    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},              // lid
+    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},  // rim
+    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},            // upper body
+    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},            // lower body
+    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},           // bottom
 }};
 
 // Newell's own approximation of a quarter circle; exact would be 0.5523.
 constexpr double quarter = 0.56;
 
-// Cross-sections of one half (y ≤ 0; z is up here), from which the other half is mirrored: x and z of the inner edge, x and
-// z of the outer edge, and the half width.
+// Cross-sections of one half (y ≤ 0; z is up here), from which the other half is mirrored: x and z of the inner edge, x
+// and z of the outer edge, and the half width.
 struct Section {
     double inner_x, inner_z, outer_x, outer_z, width;
 };
@@ -65,7 +65,10 @@ Patch half_tube(const Tube& tube, size_t first, bool mirrored) {
     for (size_t i = 0; i < 4; ++i) {
         const Section& s = tube[first + i];
         const double y = mirrored ? s.width : -s.width;
-        out[i] = {{{s.inner_x, 0, s.inner_z}, {s.inner_x, y, s.inner_z}, {s.outer_x, y, s.outer_z}, {s.outer_x, 0, s.outer_z}}};
+        out[i] = {{{s.inner_x, 0, s.inner_z},
+                   {s.inner_x, y, s.inner_z},
+                   {s.outer_x, y, s.outer_z},
+                   {s.outer_x, 0, s.outer_z}}};
         if (!mirrored) std::swap(out[i][0], out[i][3]), std::swap(out[i][1], out[i][2]);
     }
     return out;
@@ -90,7 +93,8 @@ glm::dvec3 blend(const Patch& patch, const std::array<double, 4>& u, const std::
 
 glm::dvec3 patch_normal(const Patch& patch, double u, double v) {
     const auto cross = [&](double at) {
-        return glm::cross(blend(patch, bernstein_derivative(at), bernstein(v)), blend(patch, bernstein(at), bernstein_derivative(v)));
+        return glm::cross(blend(patch, bernstein_derivative(at), bernstein(v)),
+                          blend(patch, bernstein(at), bernstein_derivative(v)));
     };
     glm::dvec3 normal = cross(u);
     // At the poles of lid and bottom a whole edge is one point; the normal there is the limit from inside the patch.

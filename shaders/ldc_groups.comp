@@ -1,0 +1,19 @@
+// Workgroups of the passes whose work is counted on the GPU.
+#version 460
+#include "common.glsl"
+#include "params.h"
+layout(local_size_x = 1) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, LdcCounters, counters)
+BUFFER(writeonly, 1, uvec3, groups)
+
+uvec3 rows(uint count) { return uvec3(min(count, DISPATCH_ROW), (count + DISPATCH_ROW - 1u) / DISPATCH_ROW, 1u); }
+
+void main() {
+    groups[LDC_GROUPS_BIG] = rows(min(counters[0].big, params.big_capacity));
+    groups[LDC_GROUPS_TILES] = rows(min(counters[0].tiles, params.tile_capacity));
+    groups[LDC_GROUPS_TOPS] = rows(min(counters[0].tops, params.top_capacity));
+    groups[LDC_GROUPS_NODES] = rows(min(counters[0].nodes, params.node_capacity));
+    groups[LDC_GROUPS_FRAGMENTS] = rows((min(counters[0].fragments, params.fragment_capacity) + 127u) / 128u);
+    groups[LDC_GROUPS_LONG] = rows(min(counters[0].long_lists, params.long_capacity));
+}

@@ -1,0 +1,77 @@
+#include "cli/values.h"
+
+#include <algorithm>
+
+namespace peelray {
+namespace {
+
+std::optional<std::vector<std::string>> parse_names(const std::string& text, const std::vector<std::string>& known) {
+    const std::vector<std::string> names = split(text);
+    const bool all_known = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return std::find(known.begin(), known.end(), name) != known.end();
+    });
+    return all_known ? std::optional(names) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> split(std::string_view list) {
+    std::vector<std::string> parts;
+    for (;;) {
+        const size_t comma = list.find(',');
+        parts.emplace_back(list.substr(0, comma));
+        if (comma == std::string_view::npos) return parts;
+        list.remove_prefix(comma + 1);
+    }
+}
+
+std::optional<glm::uvec2> parse_size(const std::string& text) {
+    const size_t x = text.find_first_of("xX");
+    if (x == std::string::npos) return std::nullopt;
+    const auto width = parse_number<uint32_t>(std::string_view(text).substr(0, x));
+    const auto height = parse_number<uint32_t>(std::string_view(text).substr(x + 1));
+    return width && height ? std::optional(glm::uvec2(*width, *height)) : std::nullopt;
+}
+
+std::optional<glm::vec3> parse_vector(const std::string& text) {
+    const std::vector<std::string> parts = split(text);
+    if (parts.size() != 3) return std::nullopt;
+    glm::vec3 vector;
+    for (int i = 0; i < 3; i++) {
+        const auto number = parse_number<float>(parts[size_t(i)]);
+        if (!number) return std::nullopt;
+        vector[i] = *number;
+    }
+    return vector;
+}
+
+std::optional<std::optional<uint32_t>> parse_resolution(const std::string& text) {
+    using Resolution = std::optional<uint32_t>;
+    const Resolution number = parse_number<uint32_t>(text);
+    return number || text == "auto" ? std::optional<Resolution>(number) : std::nullopt;
+}
+
+std::optional<glm::uvec2> parse_block(const std::string& text) {
+    if (const auto side = parse_number<uint32_t>(text)) return glm::uvec2(*side);
+    return parse_size(text);
+}
+
+std::optional<std::vector<std::string>> parse_effects(const std::string& text) {
+    return text == "none" ? std::optional(std::vector<std::string>()) : parse_names(text, effect_names());
+}
+
+std::optional<std::vector<std::string>> parse_aovs(const std::string& text) {
+    return text == "all" ? std::optional(aov_names()) : parse_names(text, aov_names());
+}
+
+const std::vector<std::string>& effect_names() {
+    static const std::vector<std::string> names = {"reflection", "refraction", "shadow", "ambient"};
+    return names;
+}
+
+const std::vector<std::string>& aov_names() {
+    static const std::vector<std::string> names = {"depth", "normal", "albedo", "position", "triangle", "material"};
+    return names;
+}
+
+}  // namespace peelray

@@ -1,0 +1,41 @@
+// Option values that are more than a word: text to values. Nothing is returned for text of another form, which is wrong
+// usage; whether a value makes sense for this scene and device is for others to say.
+#pragma once
+
+#include <charconv>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace peelray {
+
+/// A whole text that is one number: no blanks, no leading plus. T: a float type ("inf" and "nan" count) or an integer one.
+template <typename T>
+std::optional<T> parse_number(std::string_view text) {
+    T value{};
+    const char* end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && at == end ? std::optional(value) : std::nullopt;
+}
+
+/// The parts between commas; empty ones too.
+std::vector<std::string> split(std::string_view list);
+/// "1280x1024": width and height, each from 0 up.
+std::optional<glm::uvec2> parse_size(const std::string& text);
+/// "1,2.5,-3"
+std::optional<glm::vec3> parse_vector(const std::string& text);
+/// A number, or "auto": none.
+std::optional<std::optional<uint32_t>> parse_resolution(const std::string& text);
+/// "8" or "8x4": the pixels of a block.
+std::optional<glm::uvec2> parse_block(const std::string& text);
+/// A list out of effect_names(), or "none": an empty one.
+std::optional<std::vector<std::string>> parse_effects(const std::string& text);
+/// A list out of aov_names(), or "all".
+std::optional<std::vector<std::string>> parse_aovs(const std::string& text);
+
+const std::vector<std::string>& effect_names();
+const std::vector<std::string>& aov_names();
+
+}  // namespace peelray

@@ -1,0 +1,335 @@
+// What a correct glTF file must give.
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene_files.h"
+
+namespace peelray::testing {
+namespace {
+
+constexpr float pi = 3.14159265f;
+
+void expect_near(const glm::vec3& a, const glm::vec3& b) {
+    EXPECT_LT(glm::distance(a, b), 1e-5f)
+        << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+}
+
+const Primitive& first_primitive(const Scene& scene) {
+    return scene.meshes.at(0).primitives.at(0);
+}
+
+bool has_note(const Scene& scene, const std::string& words) {
+    return std::any_of(scene.notes.begin(), scene.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+std::string glb(const std::string& text, const std::string& binary) {
+    const auto chunk = [](std::string bytes, uint32_t type, char filler) {
+        while (bytes.size() % 4) bytes += filler;
+        return pack<uint32_t>({static_cast<uint32_t>(bytes.size()), type}) + bytes;
+    };
+    const std::string body = chunk(text, 0x4E4F534A, ' ') + (binary.empty() ? "" : chunk(binary, 0x004E4942, '\0'));
+    return "glTF" + pack<uint32_t>({2, static_cast<uint32_t>(body.size() + 12)}) + body;
+}
+
+TEST(Gltf, SquareHasFlatNormalsPerFace) {
+    const TempFolder folder;
+    const Scene scene = load(folder, square());
+    const Primitive& p = first_primitive(scene);
+    ASSERT_EQ(p.triangles.size(), 2u);
+    ASSERT_EQ(p.positions.size(), 6u);  // split: flat normals belong to faces, not to vertices
+    for (const glm::vec3& n : p.normals) expect_near(n, {0, 0, 1});
+    EXPECT_EQ(scene.nodes.at(0).source, 0);
+    EXPECT_EQ(scene.materials.at(p.material).metallic, 1.f);  // the format's default material
+}
+
+TEST(Gltf, NonIndexedStripsFansAndPoints) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf).erase("indices");
+    primitive(gltf)["mode"] = 5;
+    const Primitive strip = first_primitive(load(folder, gltf));
+    ASSERT_EQ(strip.triangles.size(), 2u);
+    expect_near(strip.positions[strip.triangles[1].x], {1, 0, 0});
+    expect_near(strip.positions[strip.triangles[1].y], {0, 1, 0});  // every second triangle turns round
+    primitive(gltf)["mode"] = 6;
+    const Primitive fan = first_primitive(load(folder, gltf));
+    ASSERT_EQ(fan.triangles.size(), 2u);
+    for (const glm::vec3& n : fan.normals) expect_near(n, {0, 0, 1});
+    gltf["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
+    const Scene with_points = load(folder, gltf);
+    EXPECT_EQ(with_points.meshes[0].primitives.size(), 1u);
+    EXPECT_TRUE(has_note(with_points, "1 primitives of points or lines"));
+}
+
+TEST(Gltf, EveryIndexType) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["indices"] = add_accessor(gltf, pack<uint8_t>({0, 1, 2, 0, 2, 3}), 5121, "SCALAR", 6);
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+    primitive(gltf)["indices"] = add_accessor(gltf, pack<uint32_t>({0, 1, 2, 0, 2, 3}), 5125, "SCALAR", 6);
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+}
+
+TEST(Gltf, QuantizedPositionsAndNormals) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"KHR_mesh_quantization"};
+    auto& attributes = primitive(gltf)["attributes"];
+    attributes["POSITION"] =
+        add_accessor(gltf, pack<int16_t>({0, 0, 0, 32767, 0, 0, 32767, 32767, 0, 0, -32768, 0}), 5122, "VEC3", 4, true);
+    attributes["NORMAL"] =
+        add_accessor(gltf, pack<int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127, 0, 0, 127}), 5120, "VEC3", 4, true);
+    const Primitive p = first_primitive(load(folder, gltf));
+    expect_near(p.positions.at(1), {1, 0, 0});
+    expect_near(p.positions.at(3), {0, -1, 0});  // -32768 counts as -1
+    expect_near(p.normals.at(0), {0, 0, 1});
+    attributes.erase("NORMAL");
+    attributes["POSITION"] = add_accessor(gltf, pack<uint8_t>({0, 0, 0, 9, 0, 0, 9, 9, 0, 0, 9, 0}), 5121, "VEC3", 4);
+    expect_near(first_primitive(load(folder, gltf)).positions.at(1), {9, 0, 0});
+}
+
+TEST(Gltf, InterleavedAndSparse) {
+    const TempFolder folder;
+    json gltf = square();
+    std::vector<float> interleaved;
+    for (int i = 0; i < 4; ++i) {
+        interleaved.insert(interleaved.end(), unit_square.begin() + 3 * i, unit_square.begin() + 3 * i + 3);
+        interleaved.insert(interleaved.end(), {0, 0, 1});
+    }
+    const size_t positions = add_accessor(gltf, pack(interleaved), 5126, "VEC3", 4);
+    gltf["bufferViews"].back()["byteStride"] = 24;
+    gltf["accessors"].push_back(gltf["accessors"][positions]);
+    gltf["accessors"].back()["byteOffset"] = 12;
+    primitive(gltf)["attributes"] = {{"POSITION", positions}, {"NORMAL", positions + 1}};
+    const Primitive p = first_primitive(load(folder, gltf));
+    ASSERT_EQ(p.positions.size(), 4u);
+    expect_near(p.positions[2], {1, 1, 0});
+    expect_near(p.normals[2], {0, 0, 1});
+
+    add_accessor(gltf, pack<uint8_t>({2}), 5121, "SCALAR", 1);
+    const size_t index_view = gltf["bufferViews"].size() - 1;
+    add_accessor(gltf, pack<float>({5, 6, 7}), 5126, "VEC3", 1);
+    gltf["accessors"][positions]["sparse"] = {{"count", 1},
+                                              {"indices", {{"bufferView", index_view}, {"componentType", 5121}}},
+                                              {"values", {{"bufferView", index_view + 1}}}};
+    expect_near(first_primitive(load(folder, gltf)).positions[2], {5, 6, 7});
+    // Without a buffer view the rest is zero.
+    gltf["accessors"][positions].erase("bufferView");
+    expect_near(first_primitive(load(folder, gltf)).positions[1], {0, 0, 0});
+}
+
+TEST(Gltf, GlbWithAndWithoutPadding) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["buffers"][0].erase("uri");
+    const Scene scene = load_scene(folder.write("scene.glb", glb(gltf.dump(), pack(unit_square) + "xyz")));
+    EXPECT_EQ(first_primitive(scene).triangles.size(), 2u);
+}
+
+TEST(Gltf, ExternalBufferMayBeLongerThanSaid) {
+    const TempFolder folder;
+    folder.write("a b\xC3\xA9.bin", pack(unit_square) + "more");
+    json gltf = square();
+    gltf["buffers"][0]["uri"] = "a%20b%C3%A9.bin";
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+    gltf["buffers"][0]["uri"] = "a b\xC3\xA9.bin";
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+}
+
+TEST(Gltf, HierarchyIsDepthFirstAndTransforms) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["nodes"] = {{{"mesh", 0}, {"translation", {0, 0, 1}}},
+                     {{"children", {2, 0}}, {"scale", {2, 2, 2}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}},
+                     {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 0, 1}}}};
+    gltf["scenes"][0]["nodes"] = {1};
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.nodes.size(), 3u);
+    EXPECT_EQ(scene.nodes[0].source, 1);
+    EXPECT_EQ(scene.nodes[1].source, 2);
+    EXPECT_EQ(scene.nodes[2].source, 0);
+    EXPECT_EQ(scene.nodes[2].parent, 0);
+    const Geometry geometry = flatten(scene);
+    ASSERT_EQ(geometry.triangles.size(), 4u);
+    expect_near(geometry.positions[geometry.triangles[0].x], {0, 20, 0});  // x turned to y, then twice as far
+    expect_near(geometry.positions[geometry.triangles[2].y], {0, 2, 2});
+}
+
+TEST(Gltf, SceneChoice) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["nodes"] = {{{"mesh", 0}, {"name", "a"}}, {{"mesh", 0}, {"name", "b"}}};
+    gltf["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+    EXPECT_EQ(load(folder, gltf).nodes.at(0).name, "a");
+    gltf["scene"] = 1;
+    EXPECT_EQ(load(folder, gltf).nodes.at(0).name, "b");
+    gltf.erase("scene");
+    gltf.erase("scenes");
+    EXPECT_EQ(load(folder, gltf).nodes.size(), 2u);
+}
+
+TEST(Gltf, DeepHierarchyNeedsNoCallStack) {
+    const TempFolder folder;
+    json gltf = square();
+    constexpr int depth = 100000;
+    for (int i = 0; i < depth; ++i) gltf["nodes"][i] = {{"children", {i + 1}}};
+    gltf["nodes"][depth] = {{"mesh", 0}};
+    EXPECT_EQ(load(folder, gltf).nodes.size(), depth + 1u);
+}
+
+TEST(Gltf, Materials) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["materials"] = json::parse(
+        R"([{"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.6},
+        "emissiveFactor": [1, 0.5, 0], "alphaMode": "BLEND", "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.7},
+        "KHR_materials_ior": {"ior": 1.4}, "KHR_materials_volume": {"thicknessFactor": 2, "attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]},
+        "KHR_materials_emissive_strength": {"emissiveStrength": 10}, "KHR_materials_unlit": {}, "KHR_materials_clearcoat": {}}}])");
+    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_clearcoat"};
+    primitive(gltf)["material"] = 0;
+    const Scene scene = load(folder, gltf);
+    const Material& m = scene.materials.at(0);
+    expect_near(m.base_color, {0.1f, 0.2f, 0.3f});
+    EXPECT_FLOAT_EQ(m.alpha, 0.4f);
+    EXPECT_FLOAT_EQ(m.metallic, 0.5f);
+    EXPECT_FLOAT_EQ(m.roughness, 0.6f);
+    expect_near(m.emissive, {10, 5, 0});
+    EXPECT_FLOAT_EQ(m.transmission, 0.7f);
+    EXPECT_FLOAT_EQ(m.ior, 1.4f);
+    EXPECT_FLOAT_EQ(m.thickness, 2);
+    EXPECT_FLOAT_EQ(m.attenuation_distance, 3);
+    expect_near(m.attenuation_color, {0.5f, 0.6f, 0.7f});
+    EXPECT_TRUE(m.unlit);
+    EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_clearcoat"});
+    EXPECT_EQ(scene.extensions_used.size(), 2u);
+    EXPECT_TRUE(has_note(scene, "BLEND"));
+}
+
+TEST(Gltf, BaseColorTextureWithTransformAndSampler) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["images"] = {{{"uri", "data:image/png;base64," + base64(tiny_png())}}};
+    gltf["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+    gltf["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    gltf["materials"] =
+        json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 0, "extensions":
+        {"KHR_texture_transform": {"texCoord": 1, "offset": [10, 20], "scale": [2, 3], "rotation": 1.5707963}}}}}])");
+    primitive(gltf)["material"] = 0;
+    primitive(gltf)["attributes"]["TEXCOORD_1"] =
+        add_accessor(gltf, pack<uint8_t>({0, 0, 255, 0, 255, 255, 0, 255}), 5121, "VEC2", 4, true);
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.textures.size(), 1u);
+    const Texture& texture = scene.textures[0];
+    EXPECT_EQ(texture.width, 2u);
+    EXPECT_EQ(texture.height, 1u);
+    EXPECT_EQ(texture.texels, (std::vector<uint32_t>{0xFF0000FFu, 0xFF00FF00u}));
+    EXPECT_EQ(texture.wrap_u, Texture::Wrap::clamp);
+    EXPECT_EQ(texture.wrap_v, Texture::Wrap::mirror);
+    EXPECT_TRUE(texture.nearest);
+    const Primitive& p = first_primitive(scene);
+    const glm::vec2 uv =
+        p.uvs.at(p.triangles[0].y);  // (1, 0): scaled to (2, 0), turned counter-clockwise in an image whose v runs down
+    EXPECT_NEAR(uv.x, 10, 1e-4);
+    EXPECT_NEAR(uv.y, 18, 1e-4);
+}
+
+TEST(Gltf, VertexColors) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["attributes"]["COLOR_0"] =
+        add_accessor(gltf, pack<uint16_t>({65535, 0, 0, 0, 65535, 0, 0, 0, 65535, 0, 0, 0}), 5123, "VEC3", 4, true);
+    const Primitive p = first_primitive(load(folder, gltf));
+    ASSERT_EQ(p.colors.size(), p.positions.size());
+    EXPECT_EQ(p.colors[p.triangles[0].y], glm::vec4(0, 1, 0, 1));
+}
+
+TEST(Gltf, CamerasAndLights) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["cameras"] = json::parse(R"([{"type": "perspective", "name": "p", "perspective": {"yfov": 0.5, "znear": 0.1}},
+                                      {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 2, "zfar": 9, "znear": 0}}])");
+    gltf["extensions"] = json::parse(
+        R"({"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 3, "color": [1, 0.5, 0], "range": 7,
+        "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}}, {"type": "directional"}]}})");
+    gltf["nodes"] = json::parse(
+        R"([{"mesh": 0}, {"camera": 0, "translation": [0, 0, 5], "name": "front"}, {"camera": 1, "translation": [5, 0, 0]},
+        {"translation": [1, 2, 3], "rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"extensions": {"KHR_lights_punctual": {"light": 1}}}])");
+    gltf["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.cameras.size(), 2u);
+    expect_near(scene.cameras[0].eye, {0, 0, 5});
+    expect_near(scene.cameras[0].look, {0, 0, 0});  // on its axis, next to the middle of the square
+    expect_near(scene.cameras[0].up, {0, 1, 0});
+    EXPECT_EQ(scene.cameras[0].name, "p");
+    EXPECT_FLOAT_EQ(scene.cameras[0].vertical_fov, 0.5f);
+    EXPECT_FLOAT_EQ(scene.cameras[1].orthographic_height, 4);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights[0].kind, Light::Kind::spot);
+    expect_near(scene.lights[0].color, {3, 1.5f, 0});
+    expect_near(scene.lights[0].position, {1, 2, 3});
+    expect_near(scene.lights[0].direction, {0, -1, 0});
+    EXPECT_FLOAT_EQ(scene.lights[0].range, 7);
+    EXPECT_FLOAT_EQ(scene.lights[0].outer_cone, 0.2f);
+    expect_near(scene.lights[1].direction, {0, 0, -1});
+    EXPECT_EQ(scene.nodes[3].light, 0);
+}
+
+TEST(Gltf, AnimationsSkinsAndMorphTargetsAreListed) {
+    const TempFolder folder;
+    json gltf = square();
+    const size_t times = add_accessor(gltf, pack<float>({0, 0.5f, 2.5f}), 5126, "SCALAR", 3);
+    gltf["animations"] = {
+        {{"name", "walk"}, {"samplers", {{{"input", times}, {"output", times}}}}, {"channels", json::array()}}};
+    gltf["skins"] = {{{"joints", {0}}}};
+    gltf["nodes"][0]["skin"] = 0;
+    primitive(gltf)["targets"] = json::array({{{"POSITION", 0}}});
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.animations.size(), 1u);
+    EXPECT_EQ(scene.animations[0].name, "walk");
+    EXPECT_FLOAT_EQ(scene.animations[0].duration, 2.5f);
+    EXPECT_TRUE(has_note(scene, "1 skinned nodes"));
+    EXPECT_TRUE(has_note(scene, "1 primitives with morph targets"));
+}
+
+TEST(Gltf, MirroredAndFlattenedNodes) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["nodes"][0] = {{"mesh", 0}, {"scale", {-1, 1, 1}}};
+    const Geometry mirrored = flatten(load(folder, gltf));
+    const glm::uvec3 t = mirrored.triangles[0];
+    const glm::vec3 face = glm::cross(mirrored.positions[t.y] - mirrored.positions[t.x],
+                                      mirrored.positions[t.z] - mirrored.positions[t.x]);
+    expect_near(mirrored.normals[t.x], {0, 0, 1});
+    expect_near(glm::normalize(face), {0, 0, 1});
+    for (const auto& scale : {json{1, 1, 0}, json{0, 0, 0}, json{1, 0, 1}}) {
+        gltf["nodes"][0]["scale"] = scale;
+        for (const glm::vec3& n : flatten(load(folder, gltf)).normals) EXPECT_NEAR(glm::length(n), 1, 1e-5);
+    }
+}
+
+TEST(Gltf, BrokenNormalsAreReplaced) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["attributes"]["NORMAL"] =
+        add_accessor(gltf, pack<float>({0, 0, 0, 0, NAN, 0, 0, 3, 0, 0, 0, 1}), 5126, "VEC3", 4);
+    const Scene scene = load(folder, gltf);
+    const Primitive& p = first_primitive(scene);
+    expect_near(p.normals[0], {0, 0, 1});
+    expect_near(p.normals[1], {0, 0, 1});
+    expect_near(p.normals[2], {0, 1, 0});
+    EXPECT_TRUE(has_note(scene, "2 normals"));
+}
+
+TEST(Gltf, RotationOfPi) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["nodes"][0] = {{"mesh", 0}, {"rotation", {0, std::sin(pi / 2), 0, std::cos(pi / 2)}}};
+    const Geometry geometry = flatten(load(folder, gltf));
+    expect_near(geometry.positions[geometry.triangles[0].y], {-1, 0, 0});
+}
+
+}  // namespace
+}  // namespace peelray::testing

@@ -1,0 +1,150 @@
+// Loads every model that lies in shared/models: real ones with their known number of triangles, broken ones without a
+// crash.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "scene_files.h"
+
+namespace peelray::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_scene(const fs::path& path) {
+    static const std::set<std::string> extensions = {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"};
+    return extensions.count(path.extension().string()) > 0;
+}
+
+struct Source {
+    int64_t triangles = -1;
+    std::string notes;
+};
+
+std::map<std::string, Source> read_sources() {
+    std::map<std::string, Source> out;
+    std::ifstream stream(std::string(PEELRAY_MODELS) + "/SOURCES.tsv");
+    std::string line;
+    std::getline(stream, line);
+    while (std::getline(stream, line)) {
+        std::vector<std::string> columns;
+        std::stringstream row(line);
+        for (std::string column; std::getline(row, column, '\t');) columns.push_back(column);
+        if (columns.size() < 6) continue;
+        Source source;
+        if (!columns[4].empty() && std::all_of(columns[4].begin(), columns[4].end(), ::isdigit))
+            source.triangles = std::stoll(columns[4]);
+        source.notes = columns[5];
+        // "7724 triangles drawn with instances" is what we show; the column itself counts the file's meshes once.
+        const size_t drawn = source.notes.find(" triangles drawn with instances");
+        if (drawn != std::string::npos) {
+            const size_t begin = source.notes.find_last_not_of("0123456789", drawn - 1);
+            source.triangles = std::stoll(source.notes.substr(begin + 1));
+        }
+        out[columns[0]] = source;
+    }
+    return out;
+}
+
+/// Files that rightly give an error, with a word of it.
+const std::map<std::string, std::string> expected_errors = {{"gltf/Box-Draco/Box.gltf", "KHR_draco_mesh_compression"},
+                                                            {"gltf/BoxMeshopt.glb", "EXT_meshopt_compression"}};
+
+/// Files whose default scene shows another number of triangles than the file holds.
+const std::map<std::string, int64_t> shown_triangles = {
+    {"gltf/MultipleScenes/MultipleScenes.gltf", 2},  // of the two scenes' 3
+    {"gltf/SimpleInstancing.glb", 12}};              // EXT_mesh_gpu_instancing is without effect here
+
+TEST(Sweep, RealModelsLoadWithTheirTriangles) {
+    const fs::path models = PEELRAY_MODELS;
+    if (!fs::exists(models / "SOURCES.tsv"))
+        GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
+    const std::map<std::string, Source> sources = read_sources();
+    int loaded = 0;
+    for (const char* part : {"meshes", "gltf", "skinned"})
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(models / part)) {
+            if (!entry.is_regular_file() || !is_scene(entry.path())) continue;
+            const std::string name = fs::relative(entry.path(), models).string();
+            SCOPED_TRACE(name);
+            if (const auto expected = expected_errors.find(name); expected != expected_errors.end()) {
+                EXPECT_MENTIONS(error_of(entry.path().string()), expected->second);
+                continue;
+            }
+            try {
+                const Geometry g = flatten(load_scene(entry.path().string()));
+                ++loaded;
+                const auto source = sources.find(name);
+                const auto shown = shown_triangles.find(name);
+                int64_t expected = source == sources.end() ? -1 : source->second.triangles;
+                if (shown != shown_triangles.end()) expected = shown->second;
+                EXPECT_EQ(int64_t(g.triangles.size()), expected >= 0 ? expected : int64_t(g.triangles.size()));
+                for (const glm::vec3& n : g.normals) ASSERT_NEAR(glm::length(n), 1, 1e-3);
+            } catch (const Error& error) {
+                // A part that the collection lacks is the collection's fault.
+                EXPECT_MENTIONS(std::string(error.what()), "no such file");
+                EXPECT_MENTIONS(std::string(error.what()), "AssetGenerator");
+            }
+        }
+    EXPECT_GT(loaded, 50);
+}
+
+TEST(Sweep, BrokenModelsLoadOrGiveOneLine) {
+    const fs::path models = PEELRAY_MODELS;
+    if (!fs::exists(models / "malformed")) GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
+    int loaded = 0, refused = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(models / "malformed")) {
+        if (!entry.is_regular_file() || !is_scene(entry.path())) continue;
+        SCOPED_TRACE(entry.path().string());
+        try {
+            flatten(load_scene(entry.path().string()));
+            ++loaded;
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            ++refused;
+        }
+    }
+    EXPECT_GT(loaded + refused, 150);
+}
+
+/// The same, with bytes of good files overwritten and files cut, at places that a fixed generator picks.
+TEST(Sweep, DamagedModelsLoadOrGiveOneLine) {
+    const fs::path models = PEELRAY_MODELS;
+    const std::vector<std::string> names = {"gltf/Box.glb",
+                                            "gltf/BoxInterleaved.glb",
+                                            "gltf/SimpleSparseAccessor/SimpleSparseAccessor.gltf",
+                                            "gltf/BoxVertexColors.glb",
+                                            "skinned/SimpleSkin-Embedded.gltf",
+                                            "skinned/singleBlendshapeCube_sparse.glb",
+                                            "meshes/cornell_box.obj",
+                                            "malformed/assimp/PLY/cube_binary.ply",
+                                            "malformed/assimp/PLY/float-color.ply"};
+    if (!fs::exists(models / names[0])) GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
+    const TempFolder folder;
+    uint64_t state = 1;
+    const auto random = [&](size_t below) {
+        state = state * 6364136223846793005ull + 1442695040888963407ull;
+        return static_cast<size_t>(state >> 33) % below;
+    };
+    for (const std::string& name : names) {
+        std::ifstream stream(models / name, std::ios::binary);
+        const std::string good((std::istreambuf_iterator<char>(stream)), {});
+        for (int round = 0; round < 300; ++round) {
+            std::string bad = good;
+            for (size_t i = 0; i <= random(6); ++i)
+                bad[random(bad.size())] = static_cast<char>(random(3) ? '0' + random(10) : random(256));
+            if (random(8) == 0) bad.resize(random(bad.size()));
+            SCOPED_TRACE(name + " round " + std::to_string(round));
+            try {
+                flatten(load_scene(folder.write("bad" + fs::path(name).extension().string(), bad)));
+            } catch (const Error& error) {
+                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace peelray::testing
