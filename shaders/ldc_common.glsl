@@ -57,7 +57,7 @@ LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint 
     t.b = ldcToLdi((b - grid.origin) * grid.inv_voxel, axis);
     t.c = ldcToLdi((c - grid.origin) * grid.inv_voxel, axis);
     const vec3 n = ldcToLdi(normal, axis);
-    t.slope = clamp(-n.xy / n.z, vec2(-1), vec2(1));
+    t.slope = clamp(-n.xy / n.z, vec2(-PEELRAY_SLOPE_RANGE), vec2(PEELRAY_SLOPE_RANGE));
     if (n.z < 0.0) {
         const vec3 swapped = t.b;
         t.b = t.c;
@@ -188,7 +188,7 @@ uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, bool planar) {
         }
     }
     const uint w_bits = uint(clamp(round((w + 2.0) * (65535.0 / 5.0)), 0.0, 65535.0));
-    const ivec2 slope = ivec2(round(t.slope * 8191.0));
+    const ivec2 slope = ivec2(round(t.slope * (8191.0 / PEELRAY_SLOPE_RANGE)));
     return uvec2(w_bits | coverage << 16u, (uint(slope.x) & 0x3fffu) | (uint(slope.y) & 0x3fffu) << 14u | axis << 28u);
 }
 

@@ -31,10 +31,8 @@ void main() {
         const vec3 a = positions[corners.x] - ray.origin, b = positions[corners.y] - ray.origin, c = positions[corners.z] - ray.origin;
         float t;
         vec2 uv;
-        uint found = peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv);
-        if (found == PEELRAY_UNCERTAIN)
-            found = peelrayIntersectPrecise(vec3(0), ray.direction, a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
-        if (found == PEELRAY_OUTSIDE) {
+        const uint found = peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv);
+        if ((found & PEELRAY_INSIDE) == 0u) {
             // The rasteriser snaps corners to a 256th of a pixel: this ray just misses. The nearest point of the triangle's
             // plane stands in, moved back into the triangle.
             const vec3 n = cross(b - a, c - a);

@@ -5,12 +5,14 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool any_hit = false;
 layout(constant_id = 1) const bool planar = false;
+layout(constant_id = 2) const bool precise_edges = false;
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
 BUFFER(readonly, 7, Ray, rays)
 BUFFER(readonly, 8, uint, skip)
 BUFFER(readonly, 9, uint, queue)
 BUFFER(writeonly, 10, Hit, hits)
+#define PEELRAY_PRECISE precise_edges
 #include "peelray/peelray.glsl"
 
 void main() {

@@ -25,7 +25,11 @@ bool peelrayIntersectPrecise(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c
     const vec2 u = peelrayTriple(direction, cx, cy, cz, bx, by, bz);
     const vec2 v = peelrayTriple(direction, ax, ay, az, cx, cy, cz);
     const vec2 w = peelrayTriple(direction, bx, by, bz, ax, ay, az);
-    const vec3 edges = vec3(u.x, v.x, w.x);
+    // An area of 0 comes out as a few 2^-45 of its terms: a ray through a corner could then miss every triangle around it.
+    const float reach = max(max(max(abs(ax.x), abs(bx.x)), max(abs(cx.x), max(abs(ay.x), abs(by.x)))),
+                            max(max(abs(cy.x), abs(az.x)), max(abs(bz.x), abs(cz.x))));
+    const float zero = 1e-12 * max(abs(direction.x), max(abs(direction.y), abs(direction.z))) * reach * reach;
+    const vec3 edges = mix(vec3(u.x, v.x, w.x), vec3(0), lessThanEqual(abs(vec3(u.x, v.x, w.x)), vec3(zero)));
     const float det = edges.x + edges.y + edges.z;
     t = 0.0;
     uv = vec2(0);
@@ -40,11 +44,12 @@ bool peelrayIntersectPrecise(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c
     return true;
 }
 
-/// What peelrayIntersect found.
+/// What peelrayIntersect found; uncertain ones carry what single precision says in their lowest bit.
 const uint PEELRAY_OUTSIDE = 0u, PEELRAY_INSIDE = 1u, PEELRAY_UNCERTAIN = 2u;
 
 /// Ray against triangle in single precision (Woop, Benthin, Wald: Watertight Ray/Triangle Intersection, JCGT 2013); `origin` and
-/// corners relative to one point near all of them. PEELRAY_UNCERTAIN where rounding could decide: ask peelrayIntersectPrecise.
+/// corners relative to one point near all of them. At least PEELRAY_UNCERTAIN where rounding could decide: peelrayIntersectPrecise knows.
+/// An edge is seen the same way from both of its triangles, so that the low bit alone is watertight too.
 uint peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
     const vec3 size = abs(direction);
     const bool x_largest = size.x >= size.y && size.x >= size.z;
@@ -73,11 +78,13 @@ uint peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out f
     const vec3 far = max(abs(origin), max(abs(a), max(abs(b), abs(c))));
     const float bound = 1e-6 * flat_size * max(reach, max(far.x, max(far.y, far.z)));
     if (any(greaterThan(edges, vec3(bound))) && any(lessThan(edges, vec3(-bound)))) return PEELRAY_OUTSIDE;
-    if (any(lessThanEqual(abs(edges), vec3(bound)))) return PEELRAY_UNCERTAIN;
-    const float inv = 1.0 / (edges.x + edges.y + edges.z);
+    const uint certain = all(greaterThan(abs(edges), vec3(bound))) ? 0u : PEELRAY_UNCERTAIN;
+    const float det = edges.x + edges.y + edges.z;
+    if (!peelrayInside(edges) || det == 0.0) return certain;
+    const float inv = 1.0 / det;
     t = dot(edges, vec3(A.z, B.z, C.z)) * inv * sz;
     uv = edges.yz * inv;
-    return PEELRAY_INSIDE;
+    return certain | PEELRAY_INSIDE;
 }
 
 #endif

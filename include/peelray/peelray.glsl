@@ -7,7 +7,11 @@
 //   uvec2 PEELRAY_SAMPLE(uint i)      samples, the list of a voxel in a row
 //   uint  PEELRAY_SAMPLE_ID(uint i)   triangle id * 4 + axis of the LDI
 //   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   world-space corners (`exact` only)
-// and may ask for counting with PEELRAY_COUNTERS (a uvec4: steps, lists, samples tested, triangles tested).
+// and may define
+//   PEELRAY_COUNTERS  a uvec4 that counts steps, lists, samples tested, triangles tested
+//   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
+//                     decided in single precision, watertight all the same: no ray slips between two triangles, but one in some
+//                     ten thousand that graze a surface edge-on may see the other of them.
 //
 // The data structure is that of irregular grids (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that
 // rasterisation made: every empty cell knows an empty box around it, which a ray leaves in one step.
@@ -90,117 +94,126 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
     const vec3 o_inv = o * inv;
     const ivec3 last = ivec3(grid.dims) - 1;
     const uvec3 tops = grid.dims >> 4u;
-    float s = s_begin;
-    ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last);
+    float s = s_begin, s_out = s_begin;
+    ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last), lo = cell, hi = cell;
+    vec3 exits = vec3(0);
+    uint j = 0u;        // the next sample of the cell's list
+    bool more = false;  // the list has samples left
 
+    // One turn: a new cell, or the rest of the last one's list up to the next sample that may be hit, whose triangle is tested
+    // then. Triangles are tested here and not in the inner loop, so that neighbouring rays test theirs together.
     while (true) {
-        PEELRAY_COUNT(x);
-        // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
-        ivec3 lo = cell, hi = cell;
-        uint list = PEELRAY_MISS;
-        const uvec3 top = uvec3(cell) >> 4u;
-        const uvec2 top_entry = PEELRAY_TOP((top.z * tops.y + top.y) * tops.x + top.x);
-        if ((top_entry.x >> 31u) == 0u) {
-            lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
-            hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;
-        } else {
-            const uvec3 in_top = (uvec3(cell) >> 2u) & 3u;
-            const uint node = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
-            uint box = node;
-            int scale = 2;
-            if ((node >> 31u) != 0u) {
-                const uvec3 in_node = uvec3(cell) & 3u;
-                const uint voxel = PEELRAY_VOXEL((node & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
-                box = voxel;
-                scale = 0;
-                if ((voxel >> 31u) != 0u) list = voxel & 0x7fffffffu;
-            }
-            if (list == PEELRAY_MISS) {
-                const ivec3 base = (cell >> (scale + 2)) << (scale + 2);
-                const ivec3 box_lo = ivec3(uvec3(box, box >> 2u, box >> 4u) & 3u);
-                const ivec3 box_hi = ivec3(uvec3(box >> 6u, box >> 8u, box >> 10u) & 3u);
-                lo = base + (box_lo << scale);
-                hi = base + (box_hi << scale) + (1 << scale) - 1;
-            }
-        }
-        const vec3 exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * inv - o_inv;
-        const float s_out = min(exits.x, min(exits.y, exits.z));
-
-        if (list != PEELRAY_MISS) {
-            PEELRAY_COUNT(y);
-            const vec3 o_cell = o - vec3(cell);
-            bool more = true;
-            for (uint j = list; more; j++) {
-                PEELRAY_COUNT(z);
-                // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
-                // word 1: slopes (2x14 bits: [-1, 1]), axis (2 bits), last of its list (1 bit)
-                const uvec2 data = PEELRAY_SAMPLE(j);
-                more = (data.y >> 30u & 1u) == 0u;
-                const uint axis = data.y >> 28u & 3u;
-                const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
-                const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (1.0 / 8191.0);
-                const vec3 dr = axis == 0u ? d.yzx : (axis == 1u ? d.zxy : d);
-                const vec3 or = axis == 0u ? o_cell.yzx : (axis == 1u ? o_cell.zxy : o_cell);
-                const vec2 centre = or.xy - 0.5;
-                const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
-                const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
-                const vec2 at = centre + s_plane * dr.xy;
-                if (planar) {
-                    if (s_plane > s_min && s_plane < s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
-                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                        if (id != skip) {
-                            s_best = s_plane;
-                            hit.triangle = id;
-                        }
-                    }
-                    continue;
+        if (!more) {
+            PEELRAY_COUNT(x);
+            // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
+            lo = hi = cell;
+            const uvec3 top = uvec3(cell) >> 4u;
+            const uvec2 top_entry = PEELRAY_TOP((top.z * tops.y + top.y) * tops.x + top.x);
+            if ((top_entry.x >> 31u) == 0u) {
+                lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
+                hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;
+            } else {
+                const uvec3 in_top = (uvec3(cell) >> 2u) & 3u;
+                uint entry = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
+                int scale = 2;
+                if ((entry >> 31u) != 0u) {
+                    const uvec3 in_node = uvec3(cell) & 3u;
+                    entry = PEELRAY_VOXEL((entry & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
+                    scale = 0;
+                    more = (entry >> 31u) != 0u;
+                    j = entry & 0x7fffffffu;
                 }
+                if (!more) {
+                    const ivec3 base = (cell >> (scale + 2)) << (scale + 2);
+                    lo = base + (ivec3(uvec3(entry, entry >> 2u, entry >> 4u) & 3u) << scale);
+                    hi = base + (ivec3(uvec3(entry >> 6u, entry >> 8u, entry >> 10u) & 3u) << scale) + (1 << scale) - 1;
+                }
+            }
+            exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * inv - o_inv;
+            s_out = min(exits.x, min(exits.y, exits.z));
+#ifdef PEELRAY_COUNTERS
+            if (more) PEELRAY_COUNT(y);
+#endif
+        }
+
+        uint candidate = PEELRAY_MISS;
+        const vec3 o_cell = o - vec3(cell);
+        while (more && candidate == PEELRAY_MISS) {
+            PEELRAY_COUNT(z);
+            // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
+            // word 1: slopes (2x14 bits: [-1, 1]), axis (2 bits), last of its list (1 bit)
+            const uvec2 data = PEELRAY_SAMPLE(j);
+            const uint axis = data.y >> 28u & 3u;
+            const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
+            const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
+            const vec3 dr = axis == 0u ? d.yzx : (axis == 1u ? d.zxy : d);
+            const vec3 or = axis == 0u ? o_cell.yzx : (axis == 1u ? o_cell.zxy : o_cell);
+            const vec2 centre = or.xy - 0.5;
+            const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
+            const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
+            const vec2 at = centre + s_plane * dr.xy;
+            if (planar) {
+                if (s_plane > s_min && s_plane < s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
+                    const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                    if (id != skip) {
+                        s_best = s_plane;
+                        hit.triangle = id;
+                    }
+                }
+            } else {
                 // Conservative: a hit inside this voxel lies on the sample's plane between the ray's entry and exit. The
                 // steeper the plane to the ray, the better it is known; edge-on (1/0) everything passes.
                 const float slack = PEELRAY_POSITION_SLACK + PEELRAY_PLANE_SLACK * abs(inv_den);
-                if (s_plane < s - slack || s_plane > min(s_out, s_best) + slack) continue;
-                if (slack < 0.02) {
-                    const uvec2 bit = uvec2(clamp(at * 4.0 + 2.0, vec2(0), vec2(3)));
-                    if ((data.x >> (16u + bit.y * 4u + bit.x) & 1u) == 0u) continue;
-                }
-                const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                if (id == skip) continue;
+                const uvec2 bit = uvec2(clamp(at * 4.0 + 2.0, vec2(0), vec2(3)));
+                const bool covered = !(slack < 0.02) || (data.x >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
+                if (covered && !(s_plane < s - slack) && !(s_plane > min(s_out, s_best) + slack)) candidate = j;
+            }
+            more = (data.y >> 30u & 1u) == 0u;
+            j++;
+        }
+
+        if (candidate != PEELRAY_MISS) {
+            const uint id = PEELRAY_SAMPLE_ID(candidate) >> 2u;
+            if (id != skip) {
                 PEELRAY_COUNT(w);
                 vec3 a, b, c;
                 PEELRAY_TRIANGLE(id, a, b, c);
                 float t;
                 vec2 uv;
-                const uint found = peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv);
-                if (found == PEELRAY_OUTSIDE) continue;
+                uint found = peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv);
                 float s_hit = t * grid.inv_voxel;
-                if (found == PEELRAY_UNCERTAIN) {
-                    if (!peelrayIntersectPrecise(ray.origin, d, a, b, c, t, uv)) continue;
+#ifdef PEELRAY_PRECISE
+                if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
+                    found = peelrayIntersectPrecise(ray.origin, d, a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
                     s_hit = t * grid.inv_voxel - s_shift;
                 }
-                if (s_hit > s_min && s_hit < s_best) {
+#endif
+                if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {
                     s_best = s_hit;
                     hit.triangle = id;
                     hit.uv = uv;
                 }
             }
-            if (hit.triangle != PEELRAY_MISS && (any_hit || s_best <= s_out)) break;
         }
-        if (s_out >= min(s_end, s_best)) break;
+        if (any_hit && hit.triangle != PEELRAY_MISS) break;
 
-        // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the box.
-        s = max(s, s_out);
-        const ivec3 floor_at = ivec3(floor(o + s * d));
-        const ivec3 clamped = ivec3(up.x ? min(hi.x, max(cell.x, floor_at.x)) : max(lo.x, min(cell.x, floor_at.x)),
-                                    up.y ? min(hi.y, max(cell.y, floor_at.y)) : max(lo.y, min(cell.y, floor_at.y)),
-                                    up.z ? min(hi.z, max(cell.z, floor_at.z)) : max(lo.z, min(cell.z, floor_at.z)));
-        cell = clamped;
-        if (exits.x <= exits.y && exits.x <= exits.z)
-            cell.x = up.x ? hi.x + 1 : lo.x - 1;
-        else if (exits.y <= exits.z)
-            cell.y = up.y ? hi.y + 1 : lo.y - 1;
-        else
-            cell.z = up.z ? hi.z + 1 : lo.z - 1;
-        if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, last))) break;
+        if (!more) {
+            if (s_out >= min(s_end, s_best)) break;
+            // Leave through the exit face; the other coordinates come from the position but never step backwards or out of
+            // the box.
+            s = max(s, s_out);
+            const ivec3 floor_at = ivec3(floor(o + s * d));
+            cell = ivec3(up.x ? min(hi.x, max(cell.x, floor_at.x)) : max(lo.x, min(cell.x, floor_at.x)),
+                         up.y ? min(hi.y, max(cell.y, floor_at.y)) : max(lo.y, min(cell.y, floor_at.y)),
+                         up.z ? min(hi.z, max(cell.z, floor_at.z)) : max(lo.z, min(cell.z, floor_at.z)));
+            if (exits.x <= exits.y && exits.x <= exits.z)
+                cell.x = up.x ? hi.x + 1 : lo.x - 1;
+            else if (exits.y <= exits.z)
+                cell.y = up.y ? hi.y + 1 : lo.y - 1;
+            else
+                cell.z = up.z ? hi.z + 1 : lo.z - 1;
+            if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, last))) break;
+        }
     }
     if (hit.triangle != PEELRAY_MISS) hit.t = (s_best + s_shift) / s_per_t;
     return hit;

@@ -15,6 +15,12 @@
 namespace peelray {
 namespace {
 
+/// Whatever a file's names brought along: one line, no terminal codes.
+std::string one_line(std::string text) {
+    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
+    return text;
+}
+
 /// An option whose text `parse` turns into a value. Text of another form than `form` is wrong usage.
 template <typename Value, typename Parsed>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, std::optional<Parsed> (*parse)(const std::string&),
@@ -159,12 +165,6 @@ void add_trace(CLI::App& program, TraceArguments& a) {
                "  python3 -c \"import numpy as n; print(n.load('hits.npy'))\"");
 }
 
-/// Whatever a file's names brought along: one line, no terminal codes.
-std::string one_line(std::string text) {
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-    return text;
-}
-
 /// What is wrong with the command line.
 std::string describe(const CLI::ParseError& error, const CLI::App& program) {
     const auto chosen = program.get_subcommands();
@@ -196,6 +196,17 @@ void TracingArguments::check() const {
     if (!(tolerance > 0) || !std::isfinite(tolerance)) fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
     if (block.x < 1 || block.y < 1 || block.x > 64 || block.y > 64)
         fail("a block of {}x{} pixels is out of range: choose 1 to 64 a side (--block)", block.x, block.y);
+}
+
+Geometry visible_geometry(const Scene& scene) {
+    Geometry geometry = flatten(scene);
+    const size_t count = geometry.triangles.size();
+    if (geometry.zero_area == count) fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
+    const auto note = [](const std::string& text) { fmt::print(stderr, "peelray: note: {}\n", one_line(text)); };
+    for (const std::string& text : scene.notes) note(text);
+    if (geometry.zero_area > 0) note(fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
+    for (const std::string& extension : scene.extensions_unsupported) note(fmt::format("the extension {} has no effect in this version", extension));
+    return geometry;
 }
 
 void check_repeat(uint32_t repeat) {

@@ -64,6 +64,8 @@ void run_trace(const TraceArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 
+/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit.
+Geometry visible_geometry(const Scene& scene);
 /// Throws Error unless `repeat` is a sensible number of measurements.
 void check_repeat(uint32_t repeat);
 /// Throws Error if a file of `outputs` cannot be written, comes twice or is one of `inputs`; empty names are left out.

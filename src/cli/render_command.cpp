@@ -212,10 +212,7 @@ void run_render(const RenderArguments& a) {
     check_outputs(outputs, {a.scene, a.env});
 
     Scene scene = load_scene(a.scene);
-    Geometry geometry = flatten(scene);
-    for (const std::string& note : scene.notes) fmt::print(stderr, "peelray: note: {}\n", note);
-    for (const std::string& extension : scene.extensions_unsupported)
-        fmt::print(stderr, "peelray: note: the extension {} has no effect in this version\n", extension);
+    Geometry geometry = visible_geometry(scene);
     settings.camera = choose_camera(a, scene, geometry, float(settings.width) / float(settings.height));
     if (!a.material.empty()) override_material(scene, a.material, geometry);
     if (a.floor) add_floor(scene, geometry);

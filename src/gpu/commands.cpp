@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
+#include <utility>
 
 #include "base/error.h"
 
@@ -239,13 +241,13 @@ void Commands::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
 }
 
 void Commands::label(const std::string& name) {
-    if (!device_.labels || !vkCmdBeginDebugUtilsLabelEXT) return;
+    if (!device_.labels || device_.immediate || !vkCmdBeginDebugUtilsLabelEXT) return;
     VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name.c_str(), {}};
     vkCmdBeginDebugUtilsLabelEXT(commands_, &info);
 }
 
 void Commands::end_label() {
-    if (device_.labels && vkCmdEndDebugUtilsLabelEXT) vkCmdEndDebugUtilsLabelEXT(commands_);
+    if (device_.labels && !device_.immediate && vkCmdEndDebugUtilsLabelEXT) vkCmdEndDebugUtilsLabelEXT(commands_);
 }
 
 void Commands::begin_group(const std::string& name) {
@@ -264,6 +266,7 @@ void Commands::begin_timer(const std::string& name) {
     if (device_.timestamp_period() == 0) return;
     const size_t index = timed_.size();
     timed_.push_back(group_.empty() ? name : group_ + "/" + name);
+    if (device_.immediate) return;
     if (index / kTimersPerPool == query_pools_.size()) {
         VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
         info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -280,6 +283,13 @@ void Commands::begin_timer(const std::string& name) {
 
 void Commands::end_timer() {
     if (device_.timestamp_period() == 0) return;
+    if (device_.immediate) {
+        const std::string name = timed_.back();
+        const auto start = std::chrono::steady_clock::now();
+        flush();
+        host_times_.push_back({name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
+        return;
+    }
     const size_t index = timed_.size() - 1;
     device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, query_pools_[index / kTimersPerPool],
                                     uint32_t(2 * (index % kTimersPerPool) + 1));
@@ -300,6 +310,18 @@ void Commands::read_times() {
 }
 
 void Commands::submit() {
+    if (device_.immediate) {
+        flush();
+        times_ = std::exchange(host_times_, {});
+        elapsed_ms_ = 0;
+        for (const PassTime& time : times_) elapsed_ms_ += time.ms;
+    } else if (recording_) {
+        flush();
+        read_times();
+    }
+}
+
+void Commands::flush() {
     if (!recording_) return;
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
     barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -320,7 +342,6 @@ void Commands::submit() {
     check_vulkan(device_.vk.vkQueueSubmit2(device_.queue, 1, &info, fence_), "submitting commands");
     check_vulkan(device_.vk.vkWaitForFences(device_.handle, 1, &fence_, VK_TRUE, ~0ull), "waiting for the GPU");
     check_vulkan(device_.vk.vkResetFences(device_.handle, 1, &fence_), "resetting a fence");
-    read_times();
 }
 
 void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {

@@ -112,6 +112,7 @@ class Commands {
     void end_timer();
     void label(const std::string& name);
     void end_label();
+    void flush();
     void read_times();
     void upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset);
     void download_bytes(const Buffer& buffer, std::span<std::byte> data, uint64_t offset);
@@ -126,7 +127,7 @@ class Commands {
     size_t set_pool_ = 0;
     std::vector<VkQueryPool> query_pools_;
     std::vector<std::string> timed_;
-    std::vector<PassTime> times_;
+    std::vector<PassTime> times_, host_times_;
     double elapsed_ms_ = 0;
     std::string group_;
     std::unordered_map<VkBuffer, Access> accesses_;

@@ -76,6 +76,7 @@ void Device::create_logical(bool validate) {
     check_vulkan(vkCreateDevice(physical, &info, nullptr, &handle), fmt::format("opening the device '{}'", info_.name));
     volkLoadDeviceTable(&vk, handle);
     vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);
+    immediate = properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !validate;
     // With validation on, shaders are compiled afresh, so that the layers see every pipeline being made.
     state_->cache = std::make_unique<PipelineCache>(*this, !validate);
 }

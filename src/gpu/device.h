@@ -70,6 +70,9 @@ class Device {
     VkQueue queue = VK_NULL_HANDLE;
     uint32_t queue_family = 0;
     VolkDeviceTable vk{};
+    /// Software devices run passes lazily, so that their timestamps tell nothing: each pass is submitted alone there and timed
+    /// by the host's clock. Not under validation, which is to see the passes and their barriers together.
+    bool immediate = false;
     bool labels = false;  ///< VK_EXT_debug_utils is on: passes name themselves
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
                             std::string_view what);

@@ -5,9 +5,9 @@
 namespace peelray {
 
 void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles, const RayQueue& queue,
-                  const Buffer& hits, HitTest test, bool any_hit) {
+                  const Buffer& hits, HitTest test, bool any_hit, Edges edges) {
     assert(cube.sampling == sampling_for(test));
-    const Pass& pass = device.pass("trace", {any_hit, test == HitTest::planar});
+    const Pass& pass = device.pass("trace", {any_hit, test == HitTest::planar, edges == Edges::precise && test == HitTest::exact});
     TraceParams p{};
     p.grid = cube.grid;
     p.count = queue.count;

@@ -21,10 +21,16 @@ struct RayQueue {
     uint64_t groups_offset = 0;
 };
 
+/// How `exact` hits within rounding of a triangle's edge are decided: both are watertight.
+enum class Edges : uint8_t {
+    single,   ///< in single precision: a few per million rays that graze a surface edge-on see its neighbour instead
+    precise,  ///< in doubled precision: as a double-precision ray tracer sees them
+};
+
 /// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the nearest.
 /// The cube must have been sampled for `test` (conservative: exact, centre: planar); asserted.
 void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles, const RayQueue& queue,
-                  const Buffer& hits, HitTest test, bool any_hit);
+                  const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
 
 /// The sampling that a hit test needs.
 inline Sampling sampling_for(HitTest test) { return test == HitTest::exact ? Sampling::conservative : Sampling::centre; }

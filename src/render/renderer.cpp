@@ -235,7 +235,7 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
         commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
         if (i > 0)
             record_trace(commands, device, cube, scene.triangles,
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull}, level.hits, hit, false);
+                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull}, level.hits, hit, false, Edges::single);
         record_scatter(p);
         record_shadow(p);
     }

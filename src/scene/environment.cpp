@@ -78,14 +78,16 @@ Environment sky_environment(const glm::vec3& sun_direction) {
     sky.width = 1024;
     sky.height = 512;
     sky.texels.resize(size_t(sky.width) * sky.height);
-    const glm::vec3 zenith(0.14f, 0.30f, 0.68f), horizon(0.80f, 0.86f, 0.94f), ground(0.30f, 0.28f, 0.26f), glow(1.0f, 0.85f, 0.62f);
+    const glm::vec3 zenith(0.14f, 0.30f, 0.68f), horizon(0.80f, 0.86f, 0.94f), haze(0.60f, 0.64f, 0.68f),
+                    ground(0.24f, 0.25f, 0.26f), glow(1.0f, 0.85f, 0.62f);
     for (uint32_t y = 0; y < sky.height; y++)
         for (uint32_t x = 0; x < sky.width; x++) {
             const glm::vec3 d = environment_direction((x + 0.5f) / sky.width, (y + 0.5f) / sky.height);
             const float height = std::max(d.y, 0.0f);
             glm::vec3 color = glm::mix(horizon, zenith, std::pow(height, 0.45f));
             // Haze: the horizon melts into the ground over about a degree, so that it does not alias.
-            color = glm::mix(color, ground, glm::smoothstep(0.0f, 1.0f, std::clamp(-d.y / 0.02f, 0.0f, 1.0f)));
+            const glm::vec3 below = glm::mix(haze, ground, std::pow(std::max(-d.y, 0.0f), 0.5f));
+            color = glm::mix(color, below, glm::smoothstep(0.0f, 1.0f, std::clamp(-d.y / 0.02f, 0.0f, 1.0f)));
             const float near_sun = std::max(glm::dot(d, sun_direction), 0.0f);
             if (d.y > -0.02f) color += glow * (0.25f * std::pow(near_sun, 24.0f) + 0.6f * std::pow(near_sun, 400.0f));
             sky.texels[size_t(y) * sky.width + x] = glm::vec4(color, 1);
