@@ -23,3 +23,13 @@ void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
     c = positions[corners.z];
 }
 #define PEELRAY_TRIANGLE(id, a, b, c) cubeTriangle(id, a, b, c)
+
+/// Barycentric weights (second and third corner) of a planar hit at `p`: of the nearest point of the triangle's plane, moved
+/// into the triangle.
+vec2 cubeWeights(uint id, vec3 p) {
+    vec3 a, b, c;
+    cubeTriangle(id, a, b, c);
+    const vec3 n = cross(b - a, c - a);
+    const vec2 uv = max(vec2(dot(cross(p - a, c - a), n), dot(cross(b - a, p - a), n)) / dot(n, n), vec2(0));
+    return uv / max(1.0, uv.x + uv.y);
+}

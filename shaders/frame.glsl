@@ -117,6 +117,7 @@ vec3 environmentRadiance(vec3 d, float blur) {
 
 vec3 skyRadiance(vec3 d, bool sees_sun) {
     vec3 radiance = environmentRadiance(d, 0.0);
+    if (!sees_sun) radiance *= min(1.0, frame[0].rough_limit / max(largest(radiance), 1e-30));
     if (sees_sun && dot(d, frame[0].sun_direction) >= frame[0].sun_cosine) radiance += frame[0].sun_radiance;
     return radiance;
 }

@@ -170,8 +170,9 @@ struct Frame {
     uint spp;
     uint last_level;     ///< level whose hits spawn no more rays
     uint planar;
+    float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
 };
-SHARED_SIZE(Frame, 284);
+SHARED_SIZE(Frame, 288);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
@@ -181,8 +182,9 @@ SHARED_SIZE(Frame, 284);
 struct RayState {
     vec3 weight;  ///< share of the pixel's light that comes along this ray
     uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_SEES_SUN
+    uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
 };
-SHARED_SIZE(RayState, 16);
+SHARED_SIZE(RayState, 20);
 #define MEDIUM_NONE 0x7fffffffu
 #define RAY_SEES_SUN 0x80000000u
 

@@ -14,6 +14,7 @@ BUFFER(writeonly, 6, Hit, hits)
 BUFFER(writeonly, 7, uint, queue)
 #include "peelray/intersect.glsl"
 #include "camera.glsl"
+#include "shading.glsl"
 
 void main() {
     const uint i = GLOBAL_INDEX;
@@ -22,7 +23,7 @@ void main() {
     const uvec2 pixel = recordPixel(i, params.first_row);
     const Ray ray = cameraRay(vec2(pixel) + params.jitter);
     rays[i] = ray;
-    states[i] = RayState(vec3(1), MEDIUM_NONE | RAY_SEES_SUN);
+    states[i] = RayState(vec3(1), MEDIUM_NONE | RAY_SEES_SUN, hash3(uvec3(pixel, 0u)).x);
     Hit hit = Hit(uintBitsToFloat(0x7f800000u), 0xffffffffu, 0.0, 0.0);
     const bool inside = pixel.x < frame[0].width && pixel.y < frame[0].height;
     const uint triangle = inside ? visibility[pixel.y * frame[0].width + pixel.x] : 0xffffffffu;

@@ -34,12 +34,12 @@ shared uint group_counts[2];   // reflection, refraction rays of the workgroup
 shared uint group_first;
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
-vec3 microfacet(Surface s, vec3 view, float alpha, uint record) {
+vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
     if (frame[0].spp <= 1u || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
     vec3 t, b;
     tangents(s.normal, t, b);
     const vec3 local = vec3(dot(view, t), dot(view, b), max(1e-4, dot(view, s.normal)));
-    const vec2 random = randomPair(uvec2(record, params.first_row), params.sample_index, 1u + params.level);
+    const vec2 random = randomPair(seed, params.sample_index, RANDOM_MICROFACET);
     const vec3 h = sampleGgx(normalize(local), alpha, random);
     return normalize(t * h.x + b * h.y + s.normal * h.z);
 }
@@ -56,7 +56,7 @@ void decide(inout Branch branch, vec3 path_weight, uint effect) {
 }
 
 /// Both branches of a surface, and what it sends by itself.
-vec3 scatterSurface(Surface s, vec3 incoming, RayState state, uint record, out Branch reflection, out Branch refraction) {
+vec3 scatterSurface(Surface s, vec3 incoming, RayState state, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const GpuMaterial m = materials[s.material];
     if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
@@ -67,14 +67,15 @@ vec3 scatterSurface(Surface s, vec3 incoming, RayState state, uint record, out B
     const bool leaving = transmits && !thin && !s.front;
     const float eta = thin || !transmits ? m.ior : (leaving ? 1.0 / m.ior : m.ior);
     const float alpha = m.roughness * m.roughness;
-    const vec3 h = microfacet(s, view, alpha, record);
+    const vec3 h = microfacet(s, view, alpha, state.seed);
     const float cosine = clamp(dot(view, h), 0.0, 1.0);
     float dielectric = fresnelDielectric(cosine, eta);
     if (transmits && thin) dielectric = 2.0 * dielectric / (1.0 + dielectric);  // both faces of the wall
     const vec3 metal = fresnelSchlick(s.base_color, cosine);
     const vec3 fresnel = mix(vec3(dielectric), metal, m.metallic);
     const bool mirror = m.roughness < MIRROR_ROUGHNESS;
-    const uint sun = mirror ? RAY_SEES_SUN : 0u;
+    // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
+    const uint sun = mirror ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
 
     vec3 reflected = reflect(incoming, h);
@@ -112,11 +113,11 @@ vec3 scatterSurface(Surface s, vec3 incoming, RayState state, uint record, out B
     return radiance;
 }
 
-void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weight) {
+void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weight, uint seed) {
     if (index >= params.next_capacity) return;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = Ray(offsetStart(s, s.position, branch.direction), 0.0, branch.direction, infinity);
-    next_states[index] = RayState(path_weight * branch.weight, branch.medium);
+    next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
     next_skip[index] = triangle;
 }
 
@@ -128,11 +129,12 @@ void main() {
     PathNode node = PathNode(vec3(0), NO_CHILD, vec3(0), NO_CHILD, vec3(0));
     Branch reflection = NO_BRANCH, refraction = NO_BRANCH;
     Surface s;
-    uint triangle = 0xffffffffu, slot0 = 0u, slot1 = 0u;
+    uint triangle = 0xffffffffu, slot0 = 0u, slot1 = 0u, seed = 0u;
     vec3 path_weight = vec3(0);
     if (valid) {
         const Ray ray = rays[i];
         RayState state = states[i];
+        seed = state.seed;
         const Hit hit = hits[i];
         triangle = hit.triangle;
         if (triangle == 0xffffffffu) {
@@ -142,7 +144,7 @@ void main() {
             const vec3 lost = transmittance(state.medium, hit.t);
             state.weight *= lost;
             path_weight = state.weight;
-            node.radiance = scatterSurface(s, ray.direction, state, i, reflection, refraction);
+            node.radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
             // What is not traced sees the environment.
             if (!reflection.traced) node.radiance += reflection.weight * environmentRadiance(reflection.direction, reflection.blur);
             if (!refraction.traced) node.radiance += refraction.weight * environmentRadiance(refraction.direction, 0.0);
@@ -164,11 +166,11 @@ void main() {
     if (!valid) return;
     if (reflection.traced) {
         node.child0 = group_first + slot0;
-        emitRay(node.child0, reflection, s, triangle, path_weight);
+        emitRay(node.child0, reflection, s, triangle, path_weight, hash3(uvec3(seed, 0u, params.level)).x);
     }
     if (refraction.traced) {
         node.child1 = group_first + group_counts[0] + slot1;
-        emitRay(node.child1, refraction, s, triangle, path_weight);
+        emitRay(node.child1, refraction, s, triangle, path_weight, hash3(uvec3(seed, 1u, params.level)).x);
     }
     nodes[i] = node;
 }

@@ -57,7 +57,7 @@ vec3 environmentBrdf(vec3 f0, float roughness, float cosine) {
     const vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
     const float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
     const vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
-    return f0 * ab.x + ab.y;
+    return clamp(f0 * ab.x + ab.y, vec3(0), vec3(1));  // the fit is 4 % too bright at grazing angles
 }
 
 float ggxDistribution(float n_h, float alpha) {
@@ -104,9 +104,11 @@ uvec3 hash3(uvec3 v) {
     return v;
 }
 
-/// Sample `index` of pixel `pixel` at depth `dimension`: the R2 sequence, shifted by a hash per pixel and dimension.
-vec2 randomPair(uvec2 pixel, uint index, uint dimension) {
-    const uvec3 h = hash3(uvec3(pixel, dimension));
+const uint RANDOM_MICROFACET = 1u, RANDOM_SKY = 2u;
+
+/// Sample `index` of a place in the tree of rays: the R2 sequence, shifted by a hash of the place's seed and the purpose.
+vec2 randomPair(uint seed, uint index, uint purpose) {
+    const uvec3 h = hash3(uvec3(seed, purpose, 0x9e3779b9u));
     const uvec2 step = uvec2(3242174889u, 2447445414u);  // 2^32 / g, 2^32 / g^2, g the plastic number
     return vec2((h.xy + step * index) >> 8u) * (1.0 / 16777216.0);
 }

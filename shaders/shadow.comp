@@ -35,9 +35,11 @@ vec3 visibility(vec3 start, vec3 direction, float distance, uint triangle) {
         if (hit.triangle == PEELRAY_MISS) return share;
         const GpuMaterial m = materials[triangle_materials[hit.triangle]];
         if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
-        const Surface s = surfaceAt(hit.triangle, hit.uv, direction);
+        const vec2 uv = planar ? cubeWeights(hit.triangle, start + hit.t * direction) : hit.uv;
+        const Surface s = surfaceAt(hit.triangle, uv, direction);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-        const float reflected = fresnelDielectric(clamp(-dot(direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
+        float reflected = fresnelDielectric(clamp(-dot(direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
+        if (thin) reflected = 2.0 * reflected / (1.0 + reflected);  // both faces of the wall
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
@@ -84,7 +86,7 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
     return result * n_l;
 }
 
-vec3 lightSurface(Surface s, uint triangle, vec3 view, uint record, inout uint shadow_rays, inout uint ambient_rays) {
+vec3 lightSurface(Surface s, uint triangle, vec3 view, uint seed, inout uint shadow_rays, inout uint ambient_rays) {
     const GpuMaterial m = materials[s.material];
     if ((m.flags & MATERIAL_UNLIT) != 0u) return vec3(0);
     const bool shadows = (frame[0].effects & EFFECT_SHADOW) != 0u;
@@ -105,12 +107,16 @@ vec3 lightSurface(Surface s, uint triangle, vec3 view, uint record, inout uint s
         const float reach = lights[i].kind == 0u ? distance : dot(lights[i].position - start, direction);
         sum += reflected * visibility(start, direction, reach, triangle);
     }
-    const vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
+    vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
     if (diffuse == vec3(0)) return sum;
+    // What the surface mirrors does not reach its body: the share that scatter.comp gives to the reflection.
+    const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
+    diffuse *= 1.0 - (m.roughness < MIRROR_ROUGHNESS ? vec3(fresnelDielectric(cosine, m.ior))
+                                                     : environmentBrdf(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), m.roughness, cosine));
     vec3 ambient = environmentIrradiance(s.normal);
     if ((frame[0].effects & EFFECT_AMBIENT) != 0u) {
         // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
-        const vec2 random = randomPair(uvec2(record, params.first_row), params.sample_index, 64u + params.level);
+        const vec2 random = randomPair(seed, params.sample_index, RANDOM_SKY);
         vec3 t, b;
         tangents(s.normal, t, b);
         const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
@@ -131,7 +137,7 @@ void main() {
         if (hit.triangle != 0xffffffffu) {
             const vec3 direction = rays[i].direction;
             const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), direction);
-            const vec3 light = lightSurface(s, hit.triangle, -direction, i, shadow_rays, ambient_rays);
+            const vec3 light = lightSurface(s, hit.triangle, -direction, states[i].seed, shadow_rays, ambient_rays);
             nodes[i].radiance += light * transmittance(states[i].medium, hit.t);
         }
     }

@@ -22,5 +22,7 @@ void main() {
     const Ray ray = rays[i];
     const PeelrayHit hit = peelrayTrace(params.grid, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax),
                                         params.skips != 0u ? skip[i] : PEELRAY_MISS, any_hit, planar);
-    hits[i] = Hit(hit.t, hit.triangle, hit.uv.x, hit.uv.y);
+    vec2 uv = hit.uv;
+    if (planar && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.triangle, ray.origin + hit.t * ray.direction);
+    hits[i] = Hit(hit.t, hit.triangle, uv.x, uv.y);
 }

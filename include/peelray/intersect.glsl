@@ -17,11 +17,13 @@ vec2 peelrayTriple(vec3 d, vec2 px, vec2 py, vec2 pz, vec2 qx, vec2 qy, vec2 qz)
 /// Is the point where the edges' areas are `edges` inside? Edges count as inside, so that no ray slips between triangles.
 bool peelrayInside(vec3 edges) { return all(greaterThanEqual(edges, vec3(0))) || all(lessThanEqual(edges, vec3(0))); }
 
-/// Ray against triangle with twice the precision; arguments as they are in the world.
-bool peelrayIntersectPrecise(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
-    const vec2 ax = peelrayTwoSum(a.x, -origin.x), ay = peelrayTwoSum(a.y, -origin.y), az = peelrayTwoSum(a.z, -origin.z);
-    const vec2 bx = peelrayTwoSum(b.x, -origin.x), by = peelrayTwoSum(b.y, -origin.y), bz = peelrayTwoSum(b.z, -origin.z);
-    const vec2 cx = peelrayTwoSum(c.x, -origin.x), cy = peelrayTwoSum(c.y, -origin.y), cz = peelrayTwoSum(c.z, -origin.z);
+/// Ray against triangle with twice the precision, in world space; the ray's origin is the sum of two vectors.
+bool peelrayIntersectPrecise(vec3 origin, vec3 origin_low, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+#define PEELRAY_RELATIVE(corner, axis) peelrayAdd(peelrayTwoSum(corner.axis, -origin.axis), vec2(-origin_low.axis, 0))
+    const vec2 ax = PEELRAY_RELATIVE(a, x), ay = PEELRAY_RELATIVE(a, y), az = PEELRAY_RELATIVE(a, z);
+    const vec2 bx = PEELRAY_RELATIVE(b, x), by = PEELRAY_RELATIVE(b, y), bz = PEELRAY_RELATIVE(b, z);
+    const vec2 cx = PEELRAY_RELATIVE(c, x), cy = PEELRAY_RELATIVE(c, y), cz = PEELRAY_RELATIVE(c, z);
+#undef PEELRAY_RELATIVE
     const vec2 u = peelrayTriple(direction, cx, cy, cz, bx, by, bz);
     const vec2 v = peelrayTriple(direction, ax, ay, az, cx, cy, cz);
     const vec2 w = peelrayTriple(direction, bx, by, bz, ax, ay, az);

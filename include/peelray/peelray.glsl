@@ -43,6 +43,13 @@ struct PeelrayRay {
     float tmax;
 };
 
+/// Where a line enters and leaves the box [0, size].
+vec2 peelrayClip(vec3 o, vec3 inv, vec3 size) {
+    const vec3 a = -o * inv, b = (size - o) * inv;
+    const vec3 near = min(a, b), far = max(a, b);
+    return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
+}
+
 /// First hit of a ray in the cube with tmin < t < tmax; `any_hit`: some hit. `skip`: a triangle that does not count
 /// (PEELRAY_MISS: none). `planar`: hits on the samples' planes instead of exact hits.
 ///
@@ -71,24 +78,24 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
     // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
     vec3 start = ray.origin - grid.origin;
     vec3 o = start * grid.inv_voxel;
-    vec3 near = min((vec3(0) - o) * inv, (size - o) * inv), far = max((vec3(0) - o) * inv, (size - o) * inv);
-    float s_enter = max(near.x, max(near.y, near.z)), s_exit = min(far.x, min(far.y, far.z));
-    // The division by a tiny s_per_t may overflow: then s is meaningless and so is the ray.
-    float s_begin = max(ray.tmin * s_per_t, s_enter), s_end = min(ray.tmax * s_per_t, s_exit);
-    if (!(s_begin <= s_end)) return hit;
+    vec2 inside = peelrayClip(o, inv, size);
     float s_shift = 0.0;
-    if (s_enter > 0.0 || s_exit < 0.0) {
-        s_shift = s_begin;
+    if (inside.x > 0.0 || inside.y < 0.0) {
+        // To a little before the box: far away the place of entry is known only to some voxels.
+        const float rounding = 1e-6 * abs(inside.x) + 1.0;
+        if (!(inside.x <= inside.y + rounding)) return hit;
+        s_shift = inside.x - rounding;
         const float along = s_shift * grid.voxel;
         start = vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -grid.origin.x), along, d.x),
                      peelrayFusedSum(peelrayTwoSum(ray.origin.y, -grid.origin.y), along, d.y),
                      peelrayFusedSum(peelrayTwoSum(ray.origin.z, -grid.origin.z), along, d.z));
         o = start * grid.inv_voxel;
-        s_end -= s_shift;
-        s_begin = 0.0;
+        inside = peelrayClip(o, inv, size);
     }
     const float s_min = ray.tmin * s_per_t - s_shift;
     float s_best = ray.tmax * s_per_t - s_shift;  // the nearest hit so far, or the end of the ray
+    const float s_begin = max(s_min, inside.x), s_end = min(s_best, inside.y);
+    if (!(s_begin <= s_end)) return hit;
 
     const bvec3 up = greaterThanEqual(d, vec3(0));
     const vec3 o_inv = o * inv;
@@ -184,8 +191,12 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
                 float s_hit = t * grid.inv_voxel;
 #ifdef PEELRAY_PRECISE
                 if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
-                    found = peelrayIntersectPrecise(ray.origin, d, a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
-                    s_hit = t * grid.inv_voxel - s_shift;
+                    const vec2 x = peelrayTwoSum(start.x, grid.origin.x), y = peelrayTwoSum(start.y, grid.origin.y),
+                               z = peelrayTwoSum(start.z, grid.origin.z);
+                    const bool moved = s_shift != 0.0;
+                    found = peelrayIntersectPrecise(moved ? vec3(x.x, y.x, z.x) : ray.origin, moved ? vec3(x.y, y.y, z.y) : vec3(0), d, a, b,
+                                                    c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
+                    s_hit = t * grid.inv_voxel;
                 }
 #endif
                 if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {

@@ -60,6 +60,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Geometry& geometry,
     env_size_ = {env.width, env.height};
     env_levels_ = env.levels;
     sun_cosine_ = env.sun_cosine;
+    rough_limit_ = env.rough_limit;
     sun_direction_ = env.sun_direction;
     sun_radiance_ = env.sun_radiance;
     irradiance_ = env.irradiance;
@@ -108,6 +109,7 @@ void GpuScene::describe(Frame& frame) const {
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;
     frame.sun_cosine = sun_cosine_;
+    frame.rough_limit = rough_limit_;
     frame.sun_direction = sun_direction_;
     frame.sun_radiance = sun_radiance_;
     std::copy(irradiance_.begin(), irradiance_.end(), frame.irradiance);

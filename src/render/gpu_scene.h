@@ -33,7 +33,7 @@ class GpuScene {
 
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0;
-    float sun_cosine_ = 2;
+    float sun_cosine_ = 2, rough_limit_ = 1e30f;
     glm::vec3 sun_direction_{0, 1, 0}, sun_radiance_{0};
     std::array<glm::vec3, 9> irradiance_{};
 };

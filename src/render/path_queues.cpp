@@ -23,11 +23,11 @@ void PathQueues::allocate(PathLevel& level, uint32_t index, uint32_t capacity) {
     ensure_size(device_, level.nodes, name("path nodes"), uint64_t(capacity) * sizeof(PathNode));
 }
 
-void PathQueues::prepare(uint32_t pixels, uint32_t levels) {
+void PathQueues::prepare(uint32_t pixels, uint32_t levels, bool branching) {
     // One level more than is traced: the deepest level's shader binds a next level that it never writes.
     levels_.resize(std::max<size_t>(levels_.size(), levels + 1));
     allocate(levels_[0], 0, pixels);
-    for (uint32_t i = 1; i < levels; i++) allocate(levels_[i], i, std::max(1024u, i == 1 ? pixels / 2 : pixels / 4));
+    for (uint32_t i = 1; i < levels; i++) allocate(levels_[i], i, std::max(1024u, branching || i == 1 ? pixels / 4 * 3 : pixels / 4));
     allocate(levels_[levels], levels, 64);
 }
 

@@ -19,8 +19,8 @@ class PathQueues {
   public:
     explicit PathQueues(Device& device);
 
-    /// Room for `pixels` camera rays and `levels` levels in all.
-    void prepare(uint32_t pixels, uint32_t levels);
+    /// Room for `pixels` camera rays and `levels` levels in all; `branching`: hits may start two rays.
+    void prepare(uint32_t pixels, uint32_t levels, bool branching);
 
     /// Reads the counters of a finished submission; true if every queue fitted, else the queues have grown.
     bool finish();

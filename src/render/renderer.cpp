@@ -84,7 +84,7 @@ struct Renderer::Impl {
     void check_settings() const;
     void prepare_images();
     void prepare_frame();
-    void submit();
+    void count_times();
     void build_cube();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
@@ -133,7 +133,7 @@ void Renderer::Impl::prepare_frame() {
     const uint64_t most = std::min<uint64_t>(4u << 20, device.limits().maxStorageBufferRange / (2 * sizeof(PathNode)));
     const uint32_t rows = (settings.height + 7) / 8 * 8;
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
-    queues.prepare(row_pixels * band_rows, last_level + 1);
+    queues.prepare(row_pixels * band_rows, last_level + 1, scene.has_glass);
 
     frame = {};
     frame.grid = cube.grid;
@@ -154,19 +154,18 @@ void Renderer::Impl::prepare_frame() {
     commands.upload(frame_buffer, std::span<const Frame>(&frame, 1));
 }
 
-void Renderer::Impl::submit() {
-    commands.submit();
+void Renderer::Impl::count_times() {
     times.add(commands.times());
     frame_ms += commands.elapsed_ms();
 }
 
 void Renderer::Impl::build_cube() {
-    for (;;) {
+    for (;; redone++) {
         builder.record(commands, scene.triangles, cube);
-        submit();
-        if (builder.finish(cube)) return;
-        redone++;
+        commands.submit();
+        if (builder.finish(cube)) break;
     }
+    count_times();
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
@@ -259,12 +258,13 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
             if (row == 0) record_visibility(sample);
-            for (;;) {
+            for (;; redone++) {
                 record_band(sample, row);
-                submit();
+                commands.submit();
                 if (queues.finish()) break;
-                redone++;  // the counters told how much room is needed; the picture was left alone
+                // The counters told how much room is needed; the picture was left alone.
             }
+            count_times();  // of the turn that fitted: its rays are counted, too
             rays.reflection += queues.count(QUEUE_REFLECTION);
             rays.refraction += queues.count(QUEUE_REFRACTION);
             rays.shadow += queues.count(QUEUE_SHADOW);
@@ -275,7 +275,8 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     const uint32_t pixels = settings.width * settings.height;
     const TonemapParams p{pixels, std::exp2(settings.exposure) / float(settings.spp), uint32_t(settings.tonemap)};
     commands.run(device.pass("tonemap"), {{"picture", picture}, {"encoded", encoded}}, p, groups_for(pixels, 64));
-    submit();
+    commands.submit();
+    count_times();
 }
 
 void Renderer::Impl::render_aovs(Aovs& aovs) {

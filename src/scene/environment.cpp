@@ -108,7 +108,7 @@ Environment color_environment(const glm::vec3& radiance) {
     environment.width = 8;
     environment.height = 4;
     environment.texels.assign(32, glm::vec4(radiance, 1));
-    project_irradiance(environment, [&](size_t) { return radiance; });
+    environment.irradiance[0] = kPi * radiance;
     add_levels(environment);
     return environment;
 }
@@ -146,6 +146,7 @@ Environment image_environment(uint32_t width, uint32_t height, std::span<const g
             toward += glm::dvec3(direction(i)) * (double(brightness(i)) * solid_angle(i));
         }
         environment.lights.push_back(sun_light(glm::vec3(glm::normalize(toward)), glm::vec3(irradiance)));
+        environment.rough_limit = threshold * 0.25f;
     }
     project_irradiance(environment, [&](size_t i) { return taken[i] ? glm::vec3(float(mean)) : glm::vec3(pixels[i]); });
     add_levels(environment);

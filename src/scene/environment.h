@@ -19,6 +19,7 @@ struct Environment {
     glm::vec3 sun_direction{0, 1, 0};  ///< unit, to the sun
     glm::vec3 sun_radiance{0};         ///< of its disc, which the texels do not hold
     float sun_cosine = 2;              ///< cosine of the disc's angular radius; 2: no disc
+    float rough_limit = 1e30f;         ///< radiance above this belongs to `lights`: rays after a rough surface see no more
     std::vector<Light> lights;         ///< directional lights that stand for the sun or the image's brightest spot
 };
 

@@ -1,7 +1,9 @@
 #include "scene/files.h"
 
+#include <tiny_gltf.h>
+
 #include <algorithm>
-#include <array>
+#include <climits>
 #include <fstream>
 
 #include "base/error.h"
@@ -39,35 +41,6 @@ int hex_digit(char c) {
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return -1;
-}
-
-std::array<int8_t, 256> base64_table() {
-    std::array<int8_t, 256> table;
-    table.fill(-1);
-    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < digits.size(); ++i) table[static_cast<uint8_t>(digits[i])] = static_cast<int8_t>(i);
-    return table;
-}
-
-Bytes decode_base64(std::string_view text, const std::string& where) {
-    static const std::array<int8_t, 256> table = base64_table();
-    while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-    if (text.size() % 4 == 1) fail("{}: the base64 data is truncated ({} digits)", where, text.size());
-    Bytes bytes;
-    bytes.reserve(text.size() / 4 * 3 + 2);
-    uint32_t group = 0;
-    int bits = 0;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const int digit = table[static_cast<uint8_t>(text[i])];
-        if (digit < 0) fail("{}: character {} of the base64 data is no base64 digit", where, i);
-        group = (group << 6) | static_cast<uint32_t>(digit);
-        bits += 6;
-        if (bits >= 8) {
-            bits -= 8;
-            bytes.push_back(static_cast<uint8_t>(group >> bits));
-        }
-    }
-    return bytes;
 }
 
 /// "http:", "file:", also "C:": a letter followed by letters, digits, '+', '-', '.' up to a colon.
@@ -109,7 +82,16 @@ Bytes decode_data_uri(std::string_view uri, const std::string& where) {
     if (!is_data_uri(uri) || comma == std::string_view::npos)
         fail("{}: \"{}\" is no valid data URI", where, printable(uri, 40));
     const std::string_view header = uri.substr(0, comma), body = uri.substr(comma + 1);
-    if (header.ends_with(";base64")) return decode_base64(body, where);
+    if (header.ends_with(";base64")) {
+        // tinygltf knows a few media types only; its decoder ignores which, and stops at the first foreign character.
+        Bytes bytes;
+        std::string unused;
+        if (body.size() > INT_MAX / 2) fail("{}: the base64 data is larger than 1 GiB; use a file", where);
+        if (!tinygltf::DecodeDataURI(&bytes, unused, "data:application/octet-stream;base64," + std::string(body), 0,
+                                     false))
+            fail("{}: no bytes in the base64 data", where);
+        return bytes;
+    }
     const std::string text = percent_decode(body, where);
     return {text.begin(), text.end()};
 }

@@ -27,10 +27,9 @@ struct GltfLoader {
     GltfFile file;
     Scene scene;
     Tally ignored;
-    std::vector<UvSource> uv_sources;  ///< per material
-    std::vector<JsonView> meshes, nodes, textures, samplers;
-    std::map<std::tuple<uint32_t, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
-    uint64_t triangles = 0;                                           ///< in all primitives read so far
+    std::vector<UvSource> uv_sources;                            ///< per material
+    std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
+    uint64_t triangles = 0;                                      ///< in all primitives read so far
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 

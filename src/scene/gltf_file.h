@@ -1,8 +1,10 @@
-// A glTF 2.0 file: its JSON, and its buffers, views, accessors and images with every range checked before it is read.
+// A glTF 2.0 file: tinygltf's model of it, and its accessors and images with every range checked before it is read.
 //
-// Own code instead of tinygltf 2.7: that library refuses legal files (external buffers longer than byteLength, indices
-// without a buffer view), reads values of the wrong type as defaults, and gives no place for an error message.
+// tinygltf parses; check_gltf looks at the JSON before it. Whatever tinygltf wants to read comes from our own reader,
+// which stays in the file's folder, and images are left undecoded until somebody asks for one.
 #pragma once
+
+#include <tiny_gltf.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/files.h"
-#include "scene/json_view.h"
 
 namespace peelray {
 
@@ -24,52 +26,65 @@ class GltfFile {
     GltfFile& operator=(const GltfFile&) = delete;
 
     const std::string& name() const { return name_; }  ///< the file's name without folder, for messages
-    JsonView root() const { return {&json_, name_}; }
+    /// All indices in it are in range, and vectors have the format's length or none at all.
+    const tinygltf::Model& model() const { return model_; }
+    /// The place of an element in messages: "box.gltf.meshes[3]".
+    std::string where(const char* list, size_t index) const { return fmt::format("{}.{}[{}]", name_, list, index); }
 
     struct Accessor {
         std::string where;
         uint32_t count = 0;
         uint32_t components = 0;      ///< 1 to 4 (SCALAR to VEC4), 4, 9, 16 for matrices
         uint32_t component_type = 0;  ///< 5120 to 5126
-        bool normalized = false;
     };
-    size_t accessor_count() const { return accessors_.size(); }
-    const JsonView& accessor_json(uint32_t index) const { return accessors_[index]; }
     /// What an accessor says about itself; its data is not touched.
-    Accessor accessor(uint32_t index) const;
+    Accessor accessor(int index) const;
     /// All components of all elements, normalised integers as [0, 1] or [-1, 1]. Throws Error for what is out of range.
-    std::vector<float> floats(uint32_t index);
+    std::vector<float> floats(int index);
     /// A scalar accessor of unsigned integers (vertex indices).
-    std::vector<uint32_t> integers(uint32_t index);
+    std::vector<uint32_t> integers(int index);
 
     /// The bytes of an image (external file, data URI or buffer view).
-    std::span<const uint8_t> image_bytes(uint32_t index);
-    size_t image_count() const { return images_.size(); }
-    const JsonView& image(uint32_t index) const { return images_[index]; }
+    std::span<const uint8_t> image_bytes(int index);
+    /// True where the image is a file of its own that does not exist.
+    bool is_image_missing(int index) const;
+    /// The image's own file name; empty for data URIs and buffer views.
+    std::string image_file(int index) const;
 
   private:
     struct Elements {  ///< where the elements of an accessor lie; no data: all zero
         std::span<const uint8_t> data;
         size_t stride = 0;
     };
-    void parse(const std::filesystem::path& path);
-    std::span<const uint8_t> split_glb();
-    std::span<const uint8_t> buffer(uint32_t index);
-    std::span<const uint8_t> view(uint32_t index);
-    Elements elements(const JsonView& json, const Accessor& accessor, uint64_t count, size_t element_size);
-    template <typename Store>
-    void read(uint32_t index, const Accessor& accessor, Store store);
-    template <typename Store>
-    void read_sparse(const JsonView& json, const Accessor& accessor, Store store);
+    struct Glb {
+        std::span<const uint8_t> json, binary;
+    };
+    Glb split_glb(std::span<const uint8_t> all) const;
+    void take_uris(nlohmann::json& json, std::optional<size_t> glb_bytes);
+    void load(const std::string& text, const Glb* glb);
+    Bytes read_uri(const std::string& uri, const std::string& where) const;
+    Bytes read_buffer(size_t index) const;
+    std::span<const uint8_t> view(int index) const;
+    Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count,
+                      size_t element_size) const;
     void spend(const Accessor& accessor);
+    template <typename T, typename Load>
+    std::vector<T> read(const tinygltf::Accessor& from, const Accessor& accessor, Load load);
 
     std::string name_;
     std::filesystem::path folder_;
-    Bytes bytes_;
-    std::optional<std::span<const uint8_t>> glb_chunk_;
-    nlohmann::json json_;
-    std::vector<JsonView> buffers_, views_, accessors_, images_;
-    std::vector<std::optional<Bytes>> loaded_buffers_, loaded_images_;
+    tinygltf::Model model_;
+    struct BufferSource {
+        std::string uri;
+        size_t length;
+    };
+    std::vector<BufferSource> buffer_sources_;
+    struct ImageSource {
+        std::optional<std::string> uri;
+        int view = -1;  ///< used where there is no uri; -1: none
+    };
+    std::vector<ImageSource> image_sources_;
+    std::vector<std::optional<Bytes>> loaded_images_;
     uint64_t decoded_ = 0;  ///< components decoded so far, see spend()
 };
 

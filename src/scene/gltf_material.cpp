@@ -7,57 +7,79 @@ namespace peelray {
 
 namespace {
 
-glm::vec3 to_vec3(const std::array<float, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
 float unit(double value) {
     return static_cast<float>(std::clamp(value, 0.0, 1.0));
 }
 
-Texture::Wrap wrap_mode(const JsonView& sampler, const char* key) {
-    switch (sampler.count(key, 10497)) {
-        case 33071:
+glm::vec3 to_vec3(const std::vector<double>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Texture::Wrap wrap_mode(int mode, const std::string& where) {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
             return Texture::Wrap::clamp;
-        case 33648:
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
             return Texture::Wrap::mirror;
-        case 10497:
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
             return Texture::Wrap::repeat;
         default:
-            fail("{}.{}: {} is no wrap mode", sampler.where(), key, sampler.count(key, 0));
+            fail("{}: {} is no wrap mode", where, mode);
     }
+}
+
+/// An extension's object; tinygltf's null value, which has no members, where it is missing.
+const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    static const tinygltf::Value none;
+    const auto found = extensions.find(name);
+    return found == extensions.end() ? none : found->second;
+}
+
+double number(const tinygltf::Value& object, const char* key, double missing) {
+    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : missing;
+}
+
+template <typename Vector>
+Vector vector(const tinygltf::Value& object, const char* key, Vector missing) {
+    if (object.Has(key))
+        for (int i = 0; i < Vector::length(); ++i)
+            missing[i] = static_cast<float>(object.Get(key).Get(i).GetNumberAsDouble());
+    return missing;
+}
+
+/// The texture that an extension's textureInfo shows, -1: none.
+int texture_index(const tinygltf::Value& object, const char* key) {
+    return object.Has(key) ? object.Get(key).Get("index").GetNumberAsInt() : -1;
 }
 
 class MaterialReader {
   public:
-    MaterialReader(GltfLoader& loader, const JsonView& json)
-        : loader_(loader), json_(json), extensions_(json.object("extensions")) {}
+    MaterialReader(GltfLoader& loader, size_t index)
+        : loader_(loader), model_(loader.file.model()), from_(model_.materials[index]), index_(index) {}
 
     void read() {
-        material_.name = json_.text("name", "");
+        material_.name = from_.name;
         read_metallic_roughness();
         read_emission();
         read_transmission();
-        material_.unlit = extensions_.has("KHR_materials_unlit");
-        ignore(json_, "normalTexture", "{} normal maps ignored");
-        ignore(json_, "occlusionTexture", "{} occlusion textures ignored");
-        const std::string mode = json_.text("alphaMode", "OPAQUE");
-        if (mode == "MASK") ++loader_.ignored["{} materials with alphaMode MASK drawn opaque"];
-        if (mode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
+        material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
+        ignore(from_.normalTexture.index, "{} normal maps ignored");
+        ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
+        if (from_.alphaMode == "MASK") ++loader_.ignored["{} materials with alphaMode MASK drawn opaque"];
+        if (from_.alphaMode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
         loader_.scene.materials.push_back(std::move(material_));
         loader_.uv_sources.push_back(uv_);
     }
 
   private:
     void read_metallic_roughness() {
-        const JsonView pbr = json_.object("pbrMetallicRoughness");
-        const auto color = pbr.vector<4>("baseColorFactor", {1, 1, 1, 1});
-        material_.base_color = glm::clamp(glm::vec3(color[0], color[1], color[2]), 0.f, 1.f);
-        material_.alpha = unit(color[3]);
-        material_.metallic = unit(pbr.number("metallicFactor", 1));
-        material_.roughness = unit(pbr.number("roughnessFactor", 1));
-        if (pbr.has("baseColorTexture")) read_base_color(pbr.object("baseColorTexture"));
-        if (const auto mean = mean_of(pbr, "metallicRoughnessTexture", false)) {
+        const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
+        material_.base_color = glm::clamp(to_vec3(pbr.baseColorFactor), 0.f, 1.f);
+        material_.alpha = unit(pbr.baseColorFactor[3]);
+        material_.metallic = unit(pbr.metallicFactor);
+        material_.roughness = unit(pbr.roughnessFactor);
+        if (pbr.baseColorTexture.index >= 0) read_base_color(pbr.baseColorTexture);
+        if (const auto mean = mean_of(pbr.metallicRoughnessTexture.index, false)) {
             material_.roughness *= mean->y;
             material_.metallic *= mean->z;
             ++loader_.ignored["{} metallic-roughness textures replaced by their mean"];
@@ -65,80 +87,85 @@ class MaterialReader {
     }
 
     void read_emission() {
-        const JsonView strength = extensions_.object("KHR_materials_emissive_strength");
-        material_.emissive = to_vec3(json_.vector<3>("emissiveFactor", {0, 0, 0})) *
-                             static_cast<float>(strength.number("emissiveStrength", 1));
+        const tinygltf::Value& strength = extension(from_.extensions, "KHR_materials_emissive_strength");
+        material_.emissive =
+            to_vec3(from_.emissiveFactor) * static_cast<float>(number(strength, "emissiveStrength", 1));
         material_.emissive = glm::max(material_.emissive, glm::vec3(0));
-        if (const auto mean = mean_of(json_, "emissiveTexture", true)) {
+        if (const auto mean = mean_of(from_.emissiveTexture.index, true)) {
             material_.emissive *= glm::vec3(*mean);
             ++loader_.ignored["{} emissive textures replaced by their mean"];
         }
     }
 
     void read_transmission() {
-        const JsonView transmission = extensions_.object("KHR_materials_transmission"),
-                       volume = extensions_.object("KHR_materials_volume");
-        material_.transmission = unit(transmission.number("transmissionFactor", 0));
-        if (const auto mean = mean_of(transmission, "transmissionTexture", false)) {
+        const tinygltf::Value& transmission = extension(from_.extensions, "KHR_materials_transmission");
+        const tinygltf::Value& volume = extension(from_.extensions, "KHR_materials_volume");
+        material_.transmission = unit(number(transmission, "transmissionFactor", 0));
+        if (const auto mean = mean_of(texture_index(transmission, "transmissionTexture"), false)) {
             material_.transmission *= mean->x;
             ++loader_.ignored["{} transmission textures replaced by their mean"];
         }
         // The extension allows 0 for "reflects everything", which no ray can be bent by; below 1 there is no such
         // medium.
-        material_.ior = std::max(1.f, static_cast<float>(extensions_.object("KHR_materials_ior").number("ior", 1.5)));
-        material_.thickness = std::max(0.f, static_cast<float>(volume.number("thicknessFactor", 0)));
-        ignore(volume, "thicknessTexture", "{} thickness textures ignored");
-        material_.attenuation_color = glm::clamp(to_vec3(volume.vector<3>("attenuationColor", {1, 1, 1})), 0.f, 1.f);
-        if (volume.has("attenuationDistance")) {
-            const double distance = volume.number("attenuationDistance", 0);
-            if (distance <= 0) fail("{}.attenuationDistance: {} must be above 0", volume.where(), distance);
+        const tinygltf::Value& ior = extension(from_.extensions, "KHR_materials_ior");
+        material_.ior = std::max(1.f, static_cast<float>(number(ior, "ior", 1.5)));
+        material_.thickness = std::max(0.f, static_cast<float>(number(volume, "thicknessFactor", 0)));
+        ignore(texture_index(volume, "thicknessTexture"), "{} thickness textures ignored");
+        material_.attenuation_color = glm::clamp(vector(volume, "attenuationColor", glm::vec3(1)), 0.f, 1.f);
+        if (volume.Has("attenuationDistance")) {
+            const double distance = number(volume, "attenuationDistance", 0);
+            if (distance <= 0)
+                fail("{}: attenuationDistance {} must be above 0", loader_.file.where("materials", index_), distance);
             material_.attenuation_distance = static_cast<float>(distance);
         }
     }
 
-    void read_base_color(const JsonView& info) {
-        const std::optional<uint32_t> image = image_of(info);
-        uv_.set = static_cast<uint32_t>(std::min<uint64_t>(info.count("texCoord", 0), 1000));
-        const JsonView transform = info.object("extensions").object("KHR_texture_transform");
-        const auto offset = transform.vector<2>("offset", {0, 0}), scale = transform.vector<2>("scale", {1, 1});
-        uv_.set = static_cast<uint32_t>(std::min<uint64_t>(transform.count("texCoord", uv_.set), 1000));
-        uv_.offset = {offset[0], offset[1]};
-        uv_.scale = {scale[0], scale[1]};
-        uv_.rotation = static_cast<float>(transform.number("rotation", 0));
+    void read_base_color(const tinygltf::TextureInfo& info) {
+        const tinygltf::Value& transform = extension(info.extensions, "KHR_texture_transform");
+        uv_.set = static_cast<uint32_t>(number(transform, "texCoord", info.texCoord));
+        uv_.offset = vector(transform, "offset", uv_.offset);
+        uv_.scale = vector(transform, "scale", uv_.scale);
+        uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
+        const std::optional<int> image = image_of(info.index);
         uv_.used = image.has_value();
-        if (image)
-            material_.base_color_texture =
-                texture_id(*image, info.required_index("index", loader_.textures.size(), "textures"));
+        if (image) material_.base_color_texture = texture_id(*image, info.index);
     }
 
     /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
-    void ignore(const JsonView& parent, const char* key, const char* sentence) {
-        if (!parent.has(key)) return;
+    void ignore(int texture, const char* sentence) {
+        if (texture < 0) return;
         ++loader_.ignored[sentence];
-        if (const auto image = image_of(parent.object(key)))
-            check_image(loader_.file.image_bytes(*image), where(*image));
+        if (const auto image = image_if_there(texture)) check_image(loader_.file.image_bytes(*image), where(*image));
     }
 
-    /// The image that a textureInfo shows; none (with a note) where only an extension's format is offered.
-    std::optional<uint32_t> image_of(const JsonView& info) {
-        const JsonView& texture = loader_.textures[info.required_index("index", loader_.textures.size(), "textures")];
-        const std::optional<uint32_t> image = texture.index("source", loader_.file.image_count(), "images");
-        if (!image) ++loader_.ignored["{} textures without a PNG or JPEG source ignored"];
-        return image;
+    /// The image that a texture shows; none (with a note) where only an extension's format is offered.
+    std::optional<int> image_of(int texture) {
+        const int image = model_.textures[static_cast<size_t>(texture)].source;
+        if (image >= 0) return image;
+        ++loader_.ignored["{} textures without a PNG or JPEG source ignored"];
+        return std::nullopt;
     }
 
-    int texture_id(uint32_t image, uint32_t texture) {
-        const std::optional<uint32_t> index =
-            loader_.textures[texture].index("sampler", loader_.samplers.size(), "samplers");
-        const JsonView sampler = index ? loader_.samplers[*index] : JsonView(nullptr, "default sampler");
-        const Texture::Wrap u = wrap_mode(sampler, "wrapS"), v = wrap_mode(sampler, "wrapT");
-        const bool nearest = sampler.count("magFilter", 9729) == 9728;
+    /// The same for a texture whose texels the picture does not show: a file that is not there is no reason to give up.
+    std::optional<int> image_if_there(int texture) {
+        const std::optional<int> image = image_of(texture);
+        if (!image || !loader_.file.is_image_missing(*image)) return image;
+        ++loader_.ignored["{} textures other than of the base colour left out, their image files are missing"];
+        return std::nullopt;
+    }
+
+    int texture_id(int image, int texture) {
+        const int index = model_.textures[static_cast<size_t>(texture)].sampler;
+        const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
+        const std::string at = loader_.file.where("samplers", static_cast<size_t>(std::max(index, 0)));
+        const Texture::Wrap u = wrap_mode(sampler.wrapS, at + ".wrapS"), v = wrap_mode(sampler.wrapT, at + ".wrapT");
+        const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         const auto [entry, added] =
             loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
         if (added) {
-            const JsonView& json = loader_.file.image(image);
+            const std::string& name = model_.images[static_cast<size_t>(image)].name;
             Texture decoded = decode_image(loader_.file.image_bytes(image), where(image));
-            decoded.name = json.text("name", is_data_uri(json.text("uri", "data:")) ? "" : json.text("uri", ""));
+            decoded.name = name.empty() ? loader_.file.image_file(image) : name;
             decoded.wrap_u = u;
             decoded.wrap_v = v;
             decoded.nearest = nearest;
@@ -148,22 +175,22 @@ class MaterialReader {
     }
 
     /// The place of an image in messages, with its file where it has one.
-    std::string where(uint32_t image) const {
-        const JsonView& json = loader_.file.image(image);
-        const std::string uri = json.text("uri", "data:");
-        return is_data_uri(uri) ? json.where() : fmt::format("{} ({})", json.where(), printable(uri, 80));
+    std::string where(int image) const {
+        const std::string place = loader_.file.where("images", static_cast<size_t>(image));
+        const std::string name = loader_.file.image_file(image);
+        return name.empty() ? place : fmt::format("{} ({})", place, printable(name, 80));
     }
 
-    std::optional<glm::vec4> mean_of(const JsonView& parent, const char* key, bool srgb) {
-        if (!parent.has(key)) return std::nullopt;
-        const std::optional<uint32_t> image = image_of(parent.object(key));
+    std::optional<glm::vec4> mean_of(int texture, bool srgb) {
+        const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture);
         if (!image) return std::nullopt;
         return mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
     }
 
     GltfLoader& loader_;
-    const JsonView& json_;
-    JsonView extensions_;
+    const tinygltf::Model& model_;
+    const tinygltf::Material& from_;
+    const size_t index_;
     Material material_;
     UvSource uv_;
 };
@@ -171,8 +198,7 @@ class MaterialReader {
 }  // namespace
 
 void GltfLoader::read_materials() {
-    const std::vector<JsonView> materials = file.root().objects("materials");
-    for (const JsonView& json : materials) MaterialReader(*this, json).read();
+    for (size_t i = 0; i < file.model().materials.size(); ++i) MaterialReader(*this, i).read();
     Material fallback;
     fallback.name = "default";
     fallback.metallic = 1;  // the format's defaults

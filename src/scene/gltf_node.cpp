@@ -14,21 +14,25 @@ void check_finite(const glm::mat4& m, const std::string& where) {
             if (!std::isfinite(m[c][r])) fail("{}: the transform is not finite; repair the node", where);
 }
 
-glm::mat4 local_transform(const JsonView& json) {
+glm::vec3 to_vec3(const std::vector<double>& v, const glm::vec3& missing) {
+    return v.empty() ? missing : glm::vec3(v[0], v[1], v[2]);
+}
+
+glm::mat4 local_transform(const tinygltf::Node& from) {
     glm::mat4 out{1};
-    if (json.has("matrix")) {
-        const auto m = json.vector<16>("matrix", {});
-        for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[static_cast<size_t>(i)];
+    if (!from.matrix.empty()) {
+        for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
         return out;
     }
-    const auto t = json.vector<3>("translation", {0, 0, 0}), s = json.vector<3>("scale", {1, 1, 1});
-    const auto r = json.vector<4>("rotation", {0, 0, 0, 1});
-    glm::quat rotation;
-    rotation.x = r[0], rotation.y = r[1], rotation.z = r[2], rotation.w = r[3];
-    const float length = glm::length(rotation);
-    rotation = length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
-    out = glm::translate(out, {t[0], t[1], t[2]}) * glm::mat4_cast(rotation);
-    return glm::scale(out, {s[0], s[1], s[2]});
+    glm::quat rotation(1, 0, 0, 0);
+    if (const std::vector<double>& r = from.rotation; !r.empty()) {
+        rotation.x = static_cast<float>(r[0]), rotation.y = static_cast<float>(r[1]);
+        rotation.z = static_cast<float>(r[2]), rotation.w = static_cast<float>(r[3]);
+        const float length = glm::length(rotation);
+        rotation = length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
+    }
+    out = glm::translate(out, to_vec3(from.translation, glm::vec3(0))) * glm::mat4_cast(rotation);
+    return glm::scale(out, to_vec3(from.scale, glm::vec3(1)));
 }
 
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
@@ -39,120 +43,104 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
 class NodeReader {
   public:
     explicit NodeReader(GltfLoader& loader)
-        : loader_(loader),
-          visited_(loader.nodes.size()),
-          cameras_(loader.file.root().objects("cameras")),
-          lights_(loader.file.root().object("extensions").object("KHR_lights_punctual").objects("lights")) {}
+        : loader_(loader), model_(loader.file.model()), visited_(model_.nodes.size()), read_(model_.meshes.size()) {}
 
     void read() {
         // A stack of our own: the depth of a hierarchy is the file's choice, the call stack's is not.
-        std::vector<std::pair<uint32_t, int>> todo;  // node, parent in Scene::nodes
-        const std::vector<uint32_t> roots = root_nodes();
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root) todo.emplace_back(*root, -1);
+        std::vector<std::pair<int, int>> todo;  // node, parent in Scene::nodes
+        const auto push = [&](const std::vector<int>& nodes, int parent) {
+            for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) todo.emplace_back(*node, parent);
+        };
+        push(root_nodes(), -1);
         while (!todo.empty()) {
             const auto [index, parent] = todo.back();
             todo.pop_back();
-            const JsonView& json = loader_.nodes[index];
-            if (visited_[index])
+            const auto i = static_cast<size_t>(index);
+            if (visited_[i])
                 fail("{}: the node is reached twice: it has two parents or is part of a cycle; repair the hierarchy",
-                     json.where());
-            visited_[index] = true;
-            const int self = add_node(json, index, parent);
-            const std::vector<uint32_t> children = json.indices("children", loader_.nodes.size(), "nodes");
-            for (auto child = children.rbegin(); child != children.rend(); ++child) todo.emplace_back(*child, self);
+                     loader_.file.where("nodes", i));
+            visited_[i] = true;
+            push(model_.nodes[i].children, add_node(i, parent));
         }
         aim_cameras();
     }
 
   private:
-    std::vector<uint32_t> root_nodes() const {
-        const std::vector<JsonView> scenes = loader_.file.root().objects("scenes");
-        const uint32_t shown = loader_.file.root().index("scene", scenes.size(), "scenes").value_or(0);
-        if (!scenes.empty()) return scenes[shown].indices("nodes", loader_.nodes.size(), "nodes");
-        std::vector<bool> is_child(loader_.nodes.size());
-        for (const JsonView& node : loader_.nodes)
-            for (const uint32_t child : node.indices("children", loader_.nodes.size(), "nodes")) is_child[child] = true;
-        std::vector<uint32_t> roots;
-        for (uint32_t i = 0; i < is_child.size(); ++i)
-            if (!is_child[i]) roots.push_back(i);
+    std::vector<int> root_nodes() const {
+        if (!model_.scenes.empty()) return model_.scenes[static_cast<size_t>(std::max(model_.defaultScene, 0))].nodes;
+        std::vector<bool> is_child(model_.nodes.size());
+        for (const tinygltf::Node& node : model_.nodes)
+            for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
+        std::vector<int> roots;
+        for (size_t i = 0; i < is_child.size(); ++i)
+            if (!is_child[i]) roots.push_back(static_cast<int>(i));
         return roots;
     }
 
-    int add_node(const JsonView& json, uint32_t index, int parent) {
+    int add_node(size_t index, int parent) {
+        const tinygltf::Node& from = model_.nodes[index];
         Node node;
-        node.name = json.text("name", "");
+        node.name = from.name;
         node.parent = parent;
         node.source = static_cast<int>(index);
-        node.local = local_transform(json);
+        node.local = local_transform(from);
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
-        check_finite(world, json.where());
-        if (const auto mesh = json.index("mesh", loader_.meshes.size(), "meshes")) node.mesh = show_mesh(*mesh);
-        if (const auto camera = json.index("camera", cameras_.size(), "cameras"))
-            node.camera = add_camera(cameras_[*camera], node, world);
-        const JsonView light = json.object("extensions").object("KHR_lights_punctual");
-        if (const auto i = light.index("light", lights_.size(), "lights"))
-            node.light = add_light(lights_[*i], node, world);
-        if (json.has("skin")) ++loader_.ignored["{} skinned nodes shown in their rest pose"];
+        check_finite(world, loader_.file.where("nodes", index));
+        if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
+        if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
+        if (const auto light = from.extensions.find("KHR_lights_punctual");
+            light != from.extensions.end() && light->second.Has("light"))
+            node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
+        if (from.skin >= 0) ++loader_.ignored["{} skinned nodes shown in their rest pose"];
         loader_.scene.nodes.push_back(std::move(node));
         worlds_.push_back(world);
         return static_cast<int>(worlds_.size()) - 1;
     }
 
-    int show_mesh(uint32_t mesh) {
-        if (loader_.scene.meshes.empty()) {
-            loader_.scene.meshes.resize(loader_.meshes.size());
-            read_.resize(loader_.meshes.size());
-        }
-        if (!read_[mesh]) {
-            read_[mesh] = true;
-            loader_.scene.meshes[mesh].name = loader_.meshes[mesh].text("name", "");
-            loader_.read_mesh(mesh);
-        }
-        return static_cast<int>(mesh);
+    int show_mesh(int mesh) {
+        const auto i = static_cast<size_t>(mesh);
+        loader_.scene.meshes.resize(model_.meshes.size());
+        if (!read_[i]) loader_.read_mesh(static_cast<uint32_t>(i));
+        read_[i] = true;
+        return mesh;
     }
 
-    int add_camera(const JsonView& json, const Node& node, const glm::mat4& world) {
+    int add_camera(size_t index, const Node& node, const glm::mat4& world) {
+        const tinygltf::Camera& from = model_.cameras[index];
+        const std::string where = loader_.file.where("cameras", index);
         Camera camera;
-        camera.name = json.text("name", node.name);
+        camera.name = from.name.empty() ? node.name : from.name;
         camera.eye = glm::vec3(world[3]);
         camera.look = camera.eye + unit_or(-glm::vec3(world[2]), {0, 0, -1});
         camera.up = unit_or(glm::vec3(world[1]), {0, 1, 0});
-        const std::string type = json.text("type", "");
-        if (type == "perspective") {
-            camera.vertical_fov = static_cast<float>(json.object("perspective").required_number("yfov"));
+        if (from.type == "perspective") {
+            camera.vertical_fov = static_cast<float>(from.perspective.yfov);
             if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
-                fail("{}: yfov {} is outside of (0, pi)", json.where(), camera.vertical_fov);
-        } else if (type == "orthographic") {
-            camera.orthographic_height =
-                2 * std::abs(static_cast<float>(json.object("orthographic").number("ymag", 0)));
-            if (camera.orthographic_height == 0)
-                fail("{}: ymag of the orthographic camera is 0 or missing", json.where());
+                fail("{}: yfov {} is outside of (0, pi)", where, camera.vertical_fov);
         } else {
-            fail("{}: the type \"{}\" is neither perspective nor orthographic", json.where(), printable(type, 20));
+            camera.orthographic_height = 2 * std::abs(static_cast<float>(from.orthographic.ymag));
+            if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", where);
         }
         loader_.scene.cameras.push_back(std::move(camera));
         return static_cast<int>(loader_.scene.cameras.size()) - 1;
     }
 
-    int add_light(const JsonView& json, const Node& node, const glm::mat4& world) {
+    int add_light(size_t index, const Node& node, const glm::mat4& world) {
+        const tinygltf::Light& from = model_.lights[index];
         Light light;
-        light.name = json.text("name", node.name);
-        const std::string type = json.text("type", "");
-        if (type == "point")
+        light.name = from.name.empty() ? node.name : from.name;
+        if (from.type == "point")
             light.kind = Light::Kind::point;
-        else if (type == "spot")
+        else if (from.type == "spot")
             light.kind = Light::Kind::spot;
-        else if (type != "directional")
-            fail("{}: the light type \"{}\" is unknown", json.where(), printable(type, 20));
-        const auto color = json.vector<3>("color", {1, 1, 1});
-        light.color = glm::vec3(color[0], color[1], color[2]) * static_cast<float>(json.number("intensity", 1));
+        else if (from.type != "directional")
+            fail("{}: the light type \"{}\" is unknown", loader_.file.where("lights", index), printable(from.type, 20));
+        light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
         light.position = glm::vec3(world[3]);
         light.direction = unit_or(-glm::vec3(world[2]), {0, 0, -1});
-        const double range = json.number("range", light.range);
-        if (range > 0) light.range = static_cast<float>(range);
-        const JsonView spot = json.object("spot");
-        light.inner_cone = static_cast<float>(spot.number("innerConeAngle", light.inner_cone));
-        light.outer_cone = static_cast<float>(spot.number("outerConeAngle", light.outer_cone));
+        if (from.range > 0) light.range = static_cast<float>(from.range);
+        light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
+        light.outer_cone = static_cast<float>(from.spot.outerConeAngle);
         loader_.scene.lights.push_back(std::move(light));
         return static_cast<int>(loader_.scene.lights.size()) - 1;
     }
@@ -179,8 +167,8 @@ class NodeReader {
     }
 
     GltfLoader& loader_;
+    const tinygltf::Model& model_;
     std::vector<bool> visited_, read_;
-    std::vector<JsonView> cameras_, lights_;
     std::vector<glm::mat4> worlds_;
 };
 

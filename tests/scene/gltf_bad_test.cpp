@@ -33,6 +33,52 @@ TEST(GltfBad, TruncatedGlb) {
     EXPECT_MENTIONS(error_of(folder.write("damaged.glb", damaged)), "truncated");
 }
 
+// tinygltf 2.7 would read 8 bytes behind the file here.
+TEST(GltfBad, BinaryChunkLongerThanTheGlb) {
+    const TempFolder folder;
+    const std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":8}]})";
+    const auto glb = [&](uint32_t size) {
+        return "glTF" + pack<uint32_t>({2, uint32_t(12 + 8 + text.size() + 8 + 8), uint32_t(text.size()), 0x4E4F534A}) +
+               text + pack<uint32_t>({size, 0x004E4942, 0, 0});
+    };
+    ASSERT_EQ(text.size() % 4, 0u);
+    EXPECT_MENTIONS(error_of(folder.write("whole.glb", glb(8))), "no triangles");
+    EXPECT_MENTIONS(error_of(folder.write("long.glb", glb(16))), "truncated");
+}
+
+// Every value of a good file in turn replaced by one of another type, or by a number that is too large.
+TEST(GltfBad, WrongTypesEverywhere) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}])");
+    gltf["materials"] =
+        json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1]}, "emissiveFactor": [0, 0, 0],
+        "extensions": {"KHR_materials_volume": {"attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]}}}])");
+    gltf["extensions"] = json::parse(R"({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}})");
+    gltf["nodes"][0] = {{"mesh", 0},
+                        {"camera", 0},
+                        {"translation", {1, 2, 3}},
+                        {"name", "n"},
+                        {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
+    primitive(gltf)["material"] = 0;
+    ASSERT_NO_THROW(load(folder, gltf));
+    const json flat = gltf.flatten();
+    for (const auto& [pointer, unused] : flat.items())
+        for (json::json_pointer at(pointer); !at.empty(); at.pop_back())
+            for (const json& value :
+                 {json(nullptr), json(true), json("x"), json(-1), json(1e300), json(4294967296u * 4ull), json(0.5),
+                  json::array(), json::object(), json::array({json::object()})}) {
+                json bad = gltf;
+                bad[at] = value;
+                SCOPED_TRACE(at.to_string() + " = " + value.dump());
+                try {
+                    load(folder, bad);
+                } catch (const Error& error) {
+                    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+                }
+            }
+}
+
 TEST(GltfBad, TruncatedJson) {
     const TempFolder folder;
     const std::string whole = square().dump();

@@ -138,6 +138,41 @@ TEST(Gltf, ExternalBufferMayBeLongerThanSaid) {
     EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
 }
 
+TEST(Gltf, DataUrisOfAnyMediaType) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["buffers"][0]["uri"] = "data:application/x-own;v=1;base64," + base64(pack(unit_square) + "more");
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+}
+
+TEST(Gltf, IndicesWithoutBufferViewAreZeros) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["accessors"][1].erase("bufferView");
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+}
+
+TEST(Gltf, WholeNumbersMayHaveAPoint) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["accessors"][0]["count"] = 4.0;
+    gltf["bufferViews"][0]["byteLength"] = 48.0;
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+}
+
+TEST(Gltf, MissingImagesWithoutTexelsInThePictureAreNoted) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["images"] = {{{"uri", "gone.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{"normalTexture": {"index": 0}, "emissiveTexture": {"index": 0},
+        "emissiveFactor": [1, 2, 3], "pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}}])");
+    const Scene scene = load(folder, gltf);
+    expect_near(scene.materials.at(0).emissive, {1, 2, 3});
+    EXPECT_TRUE(has_note(scene, "3 textures other than of the base colour left out"));
+    EXPECT_FALSE(has_note(scene, "replaced by their mean"));
+}
+
 TEST(Gltf, HierarchyIsDepthFirstAndTransforms) {
     const TempFolder folder;
     json gltf = square();

@@ -1,0 +1,50 @@
+# What a newcomer types. Everything here works on a fresh Debian 12 (or a current Ubuntu) without a GPU, as root or through sudo.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+PROGRAM := build/release/peelray
+# Tests run one program after the other: each already uses all cores.
+CTEST := ctest --output-on-failure --no-tests=error
+
+.PHONY: help demo build test clean format check-format packages
+.DEFAULT_GOAL := help
+
+help:
+	@echo 'make demo    install what lacks, build, render a built-in scene to out/demo.png'
+	@echo 'make test    install what lacks, build, run all tests, then the CPU-side ones under the sanitizers'
+	@echo 'make build   install what lacks, build $(PROGRAM)'
+	@echo 'make clean   remove build/ and out/'
+	@echo 'make format  apply clang-format (check-format: only look)'
+
+demo: build
+	@mkdir -p out
+	@TIMEFORMAT='out/demo.png: %R s from start to picture'; \
+	time $(PROGRAM) render builtin:teapots --size 1280x1024 -o out/demo.png
+
+build: packages
+	@cmake --preset release --log-level=NOTICE
+	@cmake --build --preset release --parallel $(JOBS) --target peelray
+
+test: packages
+	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
+	@cmake --build --preset release --parallel $(JOBS)
+	$(CTEST) --test-dir build/release
+	@echo '== the CPU-side tests once more, under the address and undefined-behaviour sanitizers'
+	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
+	@cmake --build --preset sanitize --parallel $(JOBS)
+	$(CTEST) --test-dir build/sanitize -L cpu
+
+packages:
+	@scripts/packages.sh packages.txt
+
+clean:
+	rm -rf build out
+
+SOURCES = $$(git ls-files --cached --others --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' 'include/*.h')
+
+format:
+	@command -v clang-format > /dev/null || { echo 'make format needs clang-format: apt-get install clang-format' >&2; exit 1; }
+	clang-format -i $(SOURCES)
+
+check-format:
+	@command -v clang-format > /dev/null || { echo 'make check-format needs clang-format: apt-get install clang-format' >&2; exit 1; }
+	clang-format --dry-run --Werror $(SOURCES)

@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# figures.sh [PROGRAM]: makes every picture of README.md and docs/, with the program itself.
+# On two CPU cores it takes some ten minutes, most of them for the README's picture.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${1:-build/release/peelray}
+[ -x "$program" ] || { echo "figures: there is no $program: run 'make build' first" >&2; exit 1; }
+command -v python3 > /dev/null || { echo "figures: python3 is missing: apt-get install python3" >&2; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# figure NAME SCENE OPTIONS...: docs/NAME.png
+figure() {
+    local name=$1 scene=$2
+    shift 2
+    "$program" render "$scene" -o "docs/$name.png" --size 400x320 --spp 4 "$@"
+}
+
+# The auxiliary pictures are EXR files of 32-bit floats; this turns one into a PNG that a browser shows.
+aov_to_png() {  # KIND FILE.exr FILE.png
+    python3 - "$@" << 'PYTHON'
+import struct, sys, zlib
+
+kind, source, target = sys.argv[1:]
+data = open(source, "rb").read()
+assert struct.unpack_from("<II", data) == (20000630, 2), "a single-part EXR of scan lines"
+at, channels, size = 8, [], None
+while data[at]:  # attributes: name, type, bytes, value
+    end = data.index(0, at)
+    name, at = data[at:end].decode(), end + 1
+    at = data.index(0, at) + 1
+    length, at = struct.unpack_from("<I", data, at)[0], at + 4
+    if name == "channels":
+        p = at
+        while data[p]:
+            end = data.index(0, p)
+            channels.append(data[p:end].decode())
+            assert struct.unpack_from("<I", data, end + 1)[0] == 2, "32-bit floats"
+            p = end + 17
+    if name == "dataWindow":
+        box = struct.unpack_from("<4i", data, at)
+        size = box[2] - box[0] + 1, box[3] - box[1] + 1
+    if name == "compression":
+        assert data[at] == 3, "ZIP, 16 lines a block"
+    at += length
+width, height = size
+planes = {c: [] for c in channels}
+for offset in struct.unpack_from(f"<{(height + 15) // 16}Q", data, at + 1):
+    y, length = struct.unpack_from("<iI", data, offset)
+    lines = min(16, height - y)
+    block, plain = data[offset + 8:offset + 8 + length], lines * width * 4 * len(channels)
+    if length < plain:
+        block = bytearray(zlib.decompress(block))
+        for i in range(1, plain):
+            block[i] = (block[i - 1] + block[i] - 128) & 255
+        half = (plain + 1) // 2
+        whole = bytearray(plain)
+        whole[0::2], whole[1::2] = block[:half], block[half:]
+        block = bytes(whole)
+    values = struct.unpack(f"<{plain // 4}f", block)
+    for line in range(lines):
+        for number, channel in enumerate(channels):
+            first = (line * len(channels) + number) * width
+            planes[channel] += values[first:first + width]
+
+srgb = lambda v: round(255 * (12.92 * v if v <= 0.0031308 else 1.055 * min(v, 1.0) ** (1 / 2.4) - 0.055))
+if kind == "albedo":
+    pixels = [tuple(map(srgb, p)) for p in zip(planes["R"], planes["G"], planes["B"])]
+elif kind == "normal":  # [-1, 1] becomes [0, 255]
+    pixels = [tuple(round(127.5 * v + 127.5) for v in p) if any(p) else (0, 0, 0) for p in zip(planes["X"], planes["Y"], planes["Z"])]
+elif kind == "depth":  # near is bright, nothing is black
+    known = [z for z in planes["Z"] if z < 1e30]
+    near, far = min(known), sorted(known)[len(known) * 99 // 100]
+    pixels = [(round(255 - 215 * min(1.0, (z - near) / (far - near))),) * 3 if z < 1e30 else (0, 0, 0) for z in planes["Z"]]
+else:  # a triangle's index: a colour of its own, nothing is black
+    shade = lambda n, k: 70 + (n * 2654435761 + n * n * k >> 7) % 186
+    pixels = [tuple(shade(int(n), k) for k in (3, 7, 11)) if n >= 0 else (0, 0, 0) for n in planes["triangle"]]
+
+rows = b"".join(b"\0" + bytes(v for p in pixels[y * width:(y + 1) * width] for v in p) for y in range(height))
+chunk = lambda tag, body: struct.pack(">I", len(body)) + tag + body + struct.pack(">I", zlib.crc32(tag + body))
+with open(target, "wb") as file:
+    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+               chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+PYTHON
+}
+
+# Deflates a PNG's pixels once more, harder than the program does; the picture stays what it is.
+shrink() {
+    python3 - "$@" << 'PYTHON'
+import struct, sys, zlib
+
+chunk = lambda tag, body: struct.pack(">I", len(body)) + tag + body + struct.pack(">I", zlib.crc32(tag + body))
+for name in sys.argv[1:]:
+    data = open(name, "rb").read()
+    at, header, packed = 8, b"", b""
+    while at < len(data):
+        length, tag = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + length]
+        header, packed = header + body if tag == b"IHDR" else header, packed + body if tag == b"IDAT" else packed
+        at += 12 + length
+    with open(name, "wb") as file:
+        file.write(data[:8] + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(zlib.decompress(packed), 9)) + chunk(b"IEND", b""))
+PYTHON
+}
+
+# docs/frame.md: the stages of a frame of builtin:glass.
+"$program" render builtin:glass -o "$work/glass.png" --size 400x320 --tracer none --aov triangle,normal,albedo,depth
+for kind in triangle normal albedo depth; do
+    aov_to_png "$kind" "$work/glass.$kind.exr" "docs/frame_$kind.png"
+done
+figure frame_untraced builtin:glass --tracer none
+for bounces in 0 1 4; do figure "frame_bounces_$bounces" builtin:glass --bounces "$bounces"; done
+
+# docs/scenes.md: the built-in scenes (builtin:glass is frame_bounces_4.png).
+figure scene_teapots builtin:teapots
+figure scene_tree builtin:tree
+figure scene_blob builtin:blob:20000
+
+# README.md
+"$program" render builtin:teapots -o docs/teapots.png --size 1000x640 --eye 0.3,2.75,5.6 --look -0.02,0.32,0.1 --fov 36 \
+    --exposure 0.2 --spp 32
+
+shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/scene_*.png docs/teapots.png

@@ -1,0 +1,219 @@
+// `peelray render` where all is well: every option, at 64x48.
+#include <cmath>
+
+#include "cli/program_fixture.h"
+#include "image/image.h"
+
+namespace peelray {
+namespace {
+
+class RenderCommand : public ProgramTest {
+  protected:
+    void SetUp() override {
+        ProgramTest::SetUp();
+        put("cube.obj", kCube);
+    }
+    /// Renders and reads the linear picture back.
+    Image radiance(std::vector<std::string> more) const {
+        expect_done(render(in("cube.obj"), more, "a.exr"), {"a.exr"});
+        return read_hdr(out("a.exr"));
+    }
+    std::string bytes(const std::string& scene, const std::vector<std::string>& more = {}) const {
+        expect_done(render(scene, more), {"a.png"});
+        return get(out("a.png"));
+    }
+};
+
+const std::vector<std::string> kAway = {"--eye", "0,0,5", "--look", "0,0,10"};
+
+std::vector<std::string> away(std::vector<std::string> more) {
+    more.insert(more.end(), kAway.begin(), kAway.end());
+    return more;
+}
+
+TEST_F(RenderCommand, EveryBuiltinScene) {
+    for (const std::string scene : {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:blob:1000"}) {
+        SCOPED_TRACE(scene);
+        const Outcome run = render(scene);
+        expect_done(run, {"a.png"});
+        EXPECT_NE(run.out.find("64x48"), std::string::npos) << run.out;
+        const Image8 picture = read_ldr(out("a.png"));
+        EXPECT_EQ(picture.width, 64u);
+        EXPECT_EQ(picture.height, 48u);
+        std::vector<uint32_t> colours = picture.pixels;
+        std::sort(colours.begin(), colours.end());
+        EXPECT_GT(std::unique(colours.begin(), colours.end()) - colours.begin(), 100);
+    }
+}
+
+TEST_F(RenderCommand, Formats) {
+    expect_done(render(in("cube.obj"), {}, "a.PNG"), {"a.PNG"});
+    expect_done(render(in("cube.obj"), {}, "b.exr"), {"a.PNG", "b.exr"});
+    expect_done(render(in("cube.obj"), {}, "c.hdr"), {"a.PNG", "b.exr", "c.hdr"});
+    EXPECT_EQ(read_ldr(out("a.PNG")).width, 64u);
+    const Image exr = read_hdr(out("b.exr")), hdr = read_hdr(out("c.hdr"));
+    ASSERT_EQ(exr.pixels.size(), 64u * 48u);
+    ASSERT_EQ(hdr.pixels.size(), exr.pixels.size());
+    for (size_t i = 0; i < exr.pixels.size(); i++)
+        for (int c = 0; c < 3; c++) ASSERT_NEAR(exr.pixels[i][c], hdr.pixels[i][c], 0.02 * std::max({exr.pixels[i].x, exr.pixels[i].y, exr.pixels[i].z}));
+}
+
+TEST_F(RenderCommand, AuxiliaryPictures) {
+    expect_done(render(in("cube.obj"), {"--aov", "all", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0"}),
+                {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+    // The pixel right of and above the centre sees the near face at a distance of 2.
+    EXPECT_NEAR(read_hdr(out("a.depth.exr")).at(32, 23).x, 2, 0.01);
+    EXPECT_EQ(read_hdr(out("a.material.exr")).at(32, 23).x, 0);
+    EXPECT_LE(read_hdr(out("a.triangle.exr")).at(33, 22).x, 1);
+}
+
+TEST_F(RenderCommand, AuxiliaryPicturesByName) {
+    expect_done(render(in("cube.obj"), {"--aov", "normal,depth"}, "p.hdr"), {"p.depth.exr", "p.hdr", "p.normal.exr"});
+}
+
+TEST_F(RenderCommand, Stats) {
+    expect_done(render("builtin:teapots", {"--stats", out("s.json"), "--ldc", "64", "--hit", "exact"}), {"a.png", "s.json"});
+    const auto stats = nlohmann::json::parse(get(out("s.json")));
+    for (const char* key : {"device", "driver", "api_version", "commit", "passes", "ldc", "rays", "mrays_per_second", "triangles", "image"})
+        EXPECT_TRUE(stats.contains(key)) << key;
+    EXPECT_EQ(stats["image"], nlohmann::json({64, 48}));
+    EXPECT_GT(stats["triangles"], 1000);
+    ASSERT_FALSE(stats["passes"].empty());
+    for (const auto& pass : stats["passes"]) {
+        EXPECT_TRUE(pass["name"].is_string());
+        EXPECT_GE(pass["ms"], 0);
+    }
+    EXPECT_EQ(stats["ldc"]["n"], 64);
+    EXPECT_EQ(stats["ldc"]["builder"], "compute");
+    EXPECT_EQ(stats["hit"], "exact");
+    for (const char* key : {"samples", "layers", "bytes"}) EXPECT_GT(stats["ldc"][key], 0) << key;
+    for (int c = 0; c < 3; c++) EXPECT_LT(stats["ldc"]["box"]["lower"][c], stats["ldc"]["box"]["upper"][c]);
+    EXPECT_EQ(stats["rays"]["primary"], 64 * 48);
+    for (const char* key : {"reflection", "shadow"}) EXPECT_GT(stats["rays"][key], 0) << key;
+}
+
+TEST_F(RenderCommand, StatsWithoutSecondaryRays) {
+    expect_done(render(in("cube.obj"), {"--stats", out("s.json"), "--tracer", "none"}), {"a.png", "s.json"});
+    const auto stats = nlohmann::json::parse(get(out("s.json")));
+    EXPECT_FALSE(stats.contains("ldc"));
+    for (const char* key : {"reflection", "refraction", "shadow", "ambient"}) EXPECT_EQ(stats["rays"][key], 0) << key;
+}
+
+TEST_F(RenderCommand, SameInputSameFile) {
+    // Linear half floats: 8 bits of a .png would hide small differences.
+    for (const std::string scene : {"builtin:teapots", "builtin:glass"})
+        for (const std::string spp : {"1", "2"}) {
+            std::string files[2];
+            for (std::string& file : files) {
+                expect_done(render(scene, {"--spp", spp}, "a.exr"), {"a.exr"});
+                file = get(out("a.exr"));
+            }
+            EXPECT_TRUE(files[0] == files[1]) << scene << " with --spp " << spp << " differs from run to run";
+        }
+}
+
+TEST_F(RenderCommand, CamerasByNameAndNumber) {
+    auto gltf = square_gltf();
+    gltf["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}, {"name", "near"}},
+                       {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 3}, {"znear", 0.1}, {"zfar", 10}}}, {"name", "flat"}}};
+    gltf["nodes"] = {{{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, 3}}}, {{"camera", 1}, {"translation", {0, 0, 4}}}};
+    gltf["scenes"][0]["nodes"] = {0, 1, 2};
+    put("square.bin", square_bytes());
+    put("cameras.gltf", gltf.dump());
+    const std::string scene = in("cameras.gltf"), first = bytes(scene), flat = bytes(scene, {"--camera", "flat"});
+    EXPECT_EQ(bytes(scene, {"--camera", "near"}), first);
+    EXPECT_EQ(bytes(scene, {"--camera", "0"}), first);
+    EXPECT_EQ(bytes(scene, {"--camera", "1"}), flat);
+    EXPECT_NE(first, flat);
+    EXPECT_NE(bytes(scene, {"--fov", "80"}), first);
+    std::filesystem::remove(out("a.png"));
+    expect_refused(render(scene, {"--camera", "far"}), 1, "0: near, 1: flat");
+}
+
+TEST_F(RenderCommand, EyeLookUpFov) {
+    const auto half_height = [](double distance, double size) { return 2 * std::atan(size / 2 / distance) * 180 / 3.14159265358979; };
+    // The near face, at a distance of 2, fills exactly the middle half of the picture's height.
+    const std::string fov = std::to_string(half_height(2, 2));
+    expect_done(render(in("cube.obj"), {"--aov", "depth", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up", "0,1,0", "--fov", fov}), {"a.depth.exr", "a.png"});
+    const Image depth = read_hdr(out("a.depth.exr"));
+    for (uint32_t y = 0; y < 48; y++) EXPECT_EQ(depth.at(32, y).x < 100, y >= 12 && y < 36) << y;
+    // Turned by a right angle the world's +y points to the right.
+    expect_done(render(in("cube.obj"), {"--aov", "position", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up", "-1,0,0", "--fov", fov}),
+                {"a.depth.exr", "a.png", "a.position.exr"});
+    const Image position = read_hdr(out("a.position.exr"));
+    EXPECT_GT(position.at(40, 24).y, position.at(26, 24).y);
+}
+
+TEST_F(RenderCommand, BackgroundAndEnvironment) {
+    const Image background = radiance(away({"--background", "0.25,0.5,2"}));
+    for (const glm::vec4& pixel : background.pixels) ASSERT_EQ(glm::vec3(pixel), glm::vec3(0.25f, 0.5f, 2));
+    Image map{16, 8, std::vector<glm::vec4>(128, glm::vec4(0.5f, 0.25f, 4, 1))};
+    for (const std::string name : {"map.hdr", "map.exr"}) {
+        write_hdr(in(name), map);
+        const Image environment = radiance(away({"--env", in(name)}));
+        for (const glm::vec4& pixel : environment.pixels)
+            for (int c = 0; c < 3; c++) ASSERT_NEAR(pixel[c], map.pixels[0][c], 0.01f * map.pixels[0][c]);
+    }
+    const Image sky = radiance(away({"--sky"}));
+    EXPECT_GT(sky.at(32, 24).z, 0);
+}
+
+TEST_F(RenderCommand, ExposureAndToneCurve) {
+    const auto grey = [&](const std::string& level, const std::string& stops, const std::string& curve) {
+        bytes(in("cube.obj"), away({"--background", level + "," + level + "," + level, "--exposure", stops, "--tonemap", curve}));
+        return int(read_ldr(out("a.png")).pixels.front() & 255);
+    };
+    EXPECT_EQ(grey("0.5", "0", "none"), 188);  // sRGB of one half
+    EXPECT_EQ(grey("0.25", "1", "none"), 188);
+    EXPECT_EQ(grey("1", "-1", "none"), 188);
+    EXPECT_EQ(grey("8", "0", "none"), 255);
+    EXPECT_EQ(grey("0", "0", "aces"), 0);
+    EXPECT_LT(grey("1", "0", "aces"), 255);
+    EXPECT_LT(grey("1", "0", "neutral"), 255);
+}
+
+TEST_F(RenderCommand, EffectsBouncesSamplesMaterials) {
+    const std::string scene = "builtin:teapots", plain = bytes(scene);
+    const std::string none = bytes(scene, {"--effects", "none"});
+    EXPECT_NE(none, plain);
+    EXPECT_NE(bytes(scene, {"--effects", "shadow"}), plain);
+    EXPECT_EQ(bytes(scene, {"--effects", "reflection,refraction,shadow"}), plain);
+    EXPECT_NE(bytes(scene, {"--bounces", "0"}), plain);
+    EXPECT_NE(bytes(scene, {"--spp", "4"}), plain);
+    EXPECT_NE(bytes(scene, {"--tracer", "none"}), plain);
+    EXPECT_NE(bytes(scene, {"--effects", "reflection,refraction,shadow,ambient"}), plain);
+    const std::string cube = bytes(in("cube.obj"));
+    for (const std::string material : {"mirror", "glass", "clay"}) EXPECT_NE(bytes(in("cube.obj"), {"--material", material}), cube) << material;
+    EXPECT_NE(bytes(in("cube.obj"), {"--floor"}), cube);
+}
+
+TEST_F(RenderCommand, HitTestsAndResolutions) {
+    for (const std::string hit : {"exact", "planar"})
+        for (const std::string n : {"16", "128"}) bytes(in("cube.obj"), {"--hit", hit, "--ldc", n, "--builder", "compute", "--traversal", "voxel", "--material", "mirror", "--floor"});
+}
+
+TEST_F(RenderCommand, ValidationLayersAreSilent) {
+    expect_done(render("builtin:glass", {"--validate", "--aov", "all", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}),
+                {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+}
+
+TEST_F(RenderCommand, TrianglesWithoutAreaAreCounted) {
+    put("flat.obj", std::string(kCube) + "f 1 1 2\nf 3 3 3\n");
+    const Outcome run = render(in("flat.obj"));
+    expect_done(run, {"a.png"});
+    EXPECT_NE(run.err.find("peelray: note: 2 of 14 triangles have no area"), std::string::npos) << run.err;
+}
+
+TEST_F(RenderCommand, RepeatedFramesAreTheSamePicture) {
+    const std::string once = bytes(in("cube.obj"), {"--floor"});
+    EXPECT_EQ(bytes(in("cube.obj"), {"--floor", "--repeat", "3"}), once);
+}
+
+TEST_F(RenderCommand, OldPictureIsReplacedAndCacheMayBeUnwritable) {
+    put("out/a.png", "old");
+    expect_done(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", "1x1"}, {{"XDG_CACHE_HOME", "/proc/none"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}), {"a.png"});
+    EXPECT_EQ(read_ldr(out("a.png")).width, 1u);
+}
+
+}  // namespace
+}  // namespace peelray

@@ -1,0 +1,161 @@
+// Wrong usage (status 2), impossible values and what is not built yet (status 1), help.
+#include "cli/program_fixture.h"
+
+namespace peelray {
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct Case {
+    Words arguments;
+    std::string says;
+};
+
+class Usage : public ProgramTest {
+  protected:
+    /// Every case is refused with `status` when added to a render of the cube.
+    void expect_each(int status, const std::vector<Case>& cases) const {
+        put("cube.obj", kCube);
+        for (const Case& c : cases) {
+            SCOPED_TRACE(testing::PrintToString(c.arguments));
+            expect_refused(render(in("cube.obj"), c.arguments), status, c.says);
+        }
+    }
+};
+
+TEST_F(Usage, CommandMissingOrUnknown) {
+    expect_refused(run({}), 2, "name a command: render, trace, info or devices");
+    expect_refused(run({"rendr", "x"}), 2, "unknown command 'rendr'");
+    expect_refused(run({"--colour"}), 2, "unknown option '--colour'");
+}
+
+TEST_F(Usage, ArgumentsMissing) {
+    expect_refused(run({"render"}), 2, "SCENE is required");
+    expect_refused(run({"render", "builtin:glass"}), 2, "--output is required");
+    expect_refused(run({"render", "-o", out("a.png")}), 2, "SCENE is required");
+    expect_refused(run({"trace", "builtin:glass", "--out", out("a.npy")}), 2, "--rays is required");
+    expect_refused(run({"trace", "builtin:glass", "--rays", in("r.npy")}), 2, "--out is required");
+    expect_refused(run({"info"}), 2, "SCENE is required");
+}
+
+TEST_F(Usage, UnknownFlagsAndSurplusArguments) {
+    expect_each(2, {{{"--sise", "1x1"}, "unknown option '--sise'"}, {{"-x"}, "unknown option '-x'"}, {{"more"}, "'more' is one argument too many"}});
+    expect_refused(run({"info", "builtin:glass", "--size", "1x1"}), 2, "unknown option '--size'");
+    expect_refused(run({"devices", "0"}), 2, "'0' is one argument too many");
+    expect_refused(run({"trace", "--any"}), 2, "unknown option '--any'");
+}
+
+TEST_F(Usage, MalformedValues) {
+    put("cube.obj", kCube);
+    for (const std::string size : {"abc", "64", "64x", "x48", "64x48x2", "-64x48", "6.4x48", "64 x 48", "", "99999999999x1"})
+        expect_refused(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", size}), 2, "'" + size + "' is not a picture size");
+    expect_each(2, {{{"--hit", "sometimes"}, "'sometimes' is not one of auto|exact|planar|tolerance"},
+                    {{"--builder", "x"}, "--builder"},
+                    {{"--traversal", "x"}, "--traversal"},
+                    {{"--tracer", "x"}, "--tracer"},
+                    {{"--tonemap", "x"}, "--tonemap"},
+                    {{"--material", "wood"}, "mirror|glass|clay"},
+                    {{"--ldc", "many"}, "'many' is not auto or a number"},
+                    {{"--block", "x"}, "--block"},
+                    {{"--tolerance", "x"}, "--tolerance: 'x' is not a number"},
+                    {{"--spp", "-1"}, "'-1' is not a whole number"},
+                    {{"--spp", "1.5"}, "whole number"},
+                    {{"--bounces", "1e1"}, "whole number"},
+                    {{"--repeat", "x"}, "--repeat"},
+                    {{"--fov", "wide"}, "'wide' is not a number"},
+                    {{"--exposure", "1e"}, "'1e' is not a number"},
+                    {{"--eye", "1,2"}, "'1,2' is not three numbers X,Y,Z"},
+                    {{"--look", "1,2,3,4"}, "--look"},
+                    {{"--up", "a,b,c"}, "--up"},
+                    {{"--background", "blue"}, "three numbers R,G,B"},
+                    {{"--effects", "magic"}, "'magic' is not a list out of reflection,refraction,shadow,ambient, or none"},
+                    {{"--effects", ""}, "--effects"},
+                    {{"--aov", "depth,colour"}, "--aov"},
+                    {{"--time", "x"}, "--time"},
+                    {{"--fps", "x"}, "--fps"},
+                    {{"--spp"}, "--spp"},
+                    {{"--spp", "1", "--spp", "2"}, "--spp"}});
+}
+
+TEST_F(Usage, OptionsThatExcludeEachOther) {
+    expect_each(2, {{{"--env", "e.hdr", "--sky"}, "excludes"},
+                    {{"--env", "e.hdr", "--background", "1,1,1"}, "excludes"},
+                    {{"--background", "1,1,1", "--sky"}, "excludes"}});
+}
+
+TEST_F(Usage, ImpossibleValues) {
+    put("cube.obj", kCube);
+    for (const std::string size : {"0x0", "64x0", "100000x100000", "4294967295x4294967295"})
+        expect_refused(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", size}), 1, "a picture of " + size);
+    expect_each(1, {{{"--fov", "0"}, "field of view"},
+                    {{"--fov", "180"}, "field of view"},
+                    {{"--fov", "nan"}, "field of view"},
+                    {{"--ldc", "15"}, "16 to 2048"},
+                    {{"--ldc", "0"}, "16 to 2048"},
+                    {{"--ldc", "2049"}, "16 to 2048"},
+                    {{"--bounces", "17"}, "0 to 16"},
+                    {{"--spp", "0"}, "1 to 65536"},
+                    {{"--spp", "65537"}, "1 to 65536"},
+                    {{"--repeat", "0"}, "1 to 10000"},
+                    {{"--exposure", "65"}, "-64 to 64"},
+                    {{"--exposure", "nan"}, "-64 to 64"},
+                    {{"--tolerance", "0"}, "above 0"},
+                    {{"--block", "0"}, "1 to 64"},
+                    {{"--background", "-1,0,0"}, "darker than black"},
+                    {{"--background", "inf,0,0"}, "finite"},
+                    {{"--eye", "nan,0,0"}, "finite"},
+                    {{"--look", "inf,0,0"}, "finite"},
+                    {{"--up", "0,0,nan"}, "finite"},
+                    {{"--eye", "0,0,5", "--look", "0,0,5"}, "must differ"},
+                    {{"--eye", "0,0,5", "--look", "0,0,0", "--up", "0,0,1"}, "another --up"},
+                    {{"--up", "0,0,0"}, "up"},
+                    {{"--camera", "7"}, "no cameras"},
+                    {{"--device", "no such device"}, "peelray devices"},
+                    {{"--device", "99"}, "peelray devices"},
+                    {{"--stats", out("a.png")}, "written twice"},
+                    {{"--stats", in("cube.obj")}, "is an input"}});
+}
+
+TEST_F(Usage, NotBuiltYet) {
+    expect_each(1, {{{"--builder", "peel"}, "not built into this version: use --builder compute"},
+                    {{"--builder", "abuffer"}, "not built into this version"},
+                    {{"--tracer", "khr"}, "not built into this version: use --tracer ldc"},
+                    {{"--tracer", "reference"}, "not built into this version"},
+                    {{"--tracer", "cubemap"}, "not built into this version"},
+                    {{"--hit", "tolerance"}, "not built into this version"},
+                    {{"--traversal", "mipmap"}, "not built into this version"},
+                    {{"--traversal", "two-level"}, "not built into this version"},
+                    {{"--time", "1"}, "not built into this version"},
+                    {{"--frames", "0:9", "--fps", "30"}, "not built into this version"}});
+    expect_refused(run({"bench", "--scenes", "all"}), 1, "'bench' is not built into this version");
+    expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
+    expect_refused(run({"compare", in("cube.obj"), "-o", out("r.html")}), 1, "'compare' is not built into this version");
+}
+
+TEST_F(Usage, HelpMentionsEveryOption) {
+    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block", "--ldc", "--tracer", "--device", "--validate", "--stats"};
+    std::vector<std::pair<Words, Words>> pages = {
+        {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
+        {{"render", "--help"},
+         {"SCENE", "-o,", "--size", "--eye", "--look", "--up", "--fov", "--camera", "--env", "--sky", "--background", "--exposure", "--tonemap", "--bounces",
+          "--spp", "--effects", "--time", "--frames", "--fps", "--aov", "--material", "--floor", "--repeat", "builtin:teapots", "builtin:blob:N", "1280x1024"}},
+        {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat"}},
+        {{"info", "--help"}, {"SCENE"}},
+        {{"devices", "--help"}, {}},
+        {{"compare", "--help"}, {}},
+        {{"bench", "--help"}, {}},
+        {{"view", "--help"}, {}}};
+    for (int i : {1, 2}) pages[size_t(i)].second.insert(pages[size_t(i)].second.end(), tracing.begin(), tracing.end());
+    for (const auto& [arguments, words] : pages) {
+        const Outcome help = run(arguments);
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        expect_done(help, {});
+        for (const std::string& word : words) EXPECT_NE(help.out.find(word), std::string::npos) << word;
+    }
+    const Outcome version = run({"--version"});
+    expect_done(version, {});
+    EXPECT_TRUE(version.out.starts_with("peelray ")) << version.out;
+}
+
+}  // namespace
+}  // namespace peelray

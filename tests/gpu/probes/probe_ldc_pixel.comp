@@ -1,0 +1,19 @@
+// A projected triangle at one pixel: coverage, depth range, packed sample.
+#version 460
+#include "ldc_common.glsl"
+#include "probe.glsl"
+struct Input { vec3 a, b, c; vec2 slope; ivec2 pixel; uint voxel_w, planar; };
+struct Output { vec3 edges; uint covers; ivec2 depth; uvec2 packed; };
+PROBE(Input, Output)
+
+Output probe(Input x) {
+    const LdcTriangle t = LdcTriangle(x.a, x.b, x.c, x.slope);
+    const vec2 centre = vec2(x.pixel) + 0.5;
+    const bool planar = x.planar != 0u;
+    Output o;
+    o.edges = ldcEdges(t, centre);
+    o.covers = ldcCovers(t, ldcReach(t), centre, planar) ? 1u : 0u;
+    o.depth = ldcDepthRange(t, centre, planar);
+    o.packed = ldcPackSample(t, uvec3(x.pixel, x.voxel_w), 2u, planar);  // in the z-LDI (u, v, w) is (x, y, z)
+    return o;
+}
