@@ -132,42 +132,31 @@ uint ldcMaskRank(uvec2 mask, uint bit) {
     const uint high = bit < 32u ? 0u : mask.y & ((1u << (bit - 32u)) - 1u);
     return uint(bitCount(low) + bitCount(high));
 }
-uvec2 ldcMaskBox(ivec3 lo, ivec3 hi) {
-    const uint row = ((1u << (hi.x - lo.x + 1)) - 1u) << lo.x;
-    uint slab = 0u;
-    for (int y = lo.y; y <= hi.y; y++) slab |= row << (4 * y);
-    uvec2 mask = uvec2(0);
-    for (int z = lo.z; z <= hi.z; z++) {
-        if (z < 2)
-            mask.x |= slab << (16 * z);
-        else
-            mask.y |= slab << (16 * (z - 2));
-    }
-    return mask;
+uvec2 ldcMaskUp(uvec2 mask, uint bits) { return uvec2(mask.x << bits, mask.y << bits | mask.x >> (32u - bits)); }
+uvec2 ldcMaskDown(uvec2 mask, uint bits) { return uvec2(mask.x >> bits | mask.y << (32u - bits), mask.y >> bits); }
+
+/// Extends the empty box `box` by its neighbours `slab`, if it does not end at the border `rim` and they are empty.
+void ldcGrowFace(inout uvec2 box, uvec2 slab, uvec2 rim, uvec2 mask) {
+    const uvec2 blocked = (box & rim) | (slab & mask);
+    if ((blocked.x | blocked.y) == 0u) box |= slab;
 }
+
 /// The largest empty box around the empty cell `index` that greedy growth finds, face by face, inside the 4x4x4 cells.
-/// Packed as the traversal reads it: lo 3x2 bits, hi 3x2 bits.
+/// Packed as the traversal reads it: lo 3x2 bits, hi 3x2 bits, which are the indices of the box's first and last cell.
 uint ldcGrowBox(uvec2 mask, uint index) {
-    ivec3 lo = ivec3(ldcCell64(index)), hi = lo;
-    for (int round = 0; round < 3; round++)
-        for (int face = 0; face < 6; face++) {
-            const int axis = face >> 1;
-            ivec3 slab_lo = lo, slab_hi = hi;
-            if ((face & 1) != 0) {
-                if (hi[axis] == 3) continue;
-                slab_lo[axis] = slab_hi[axis] = hi[axis] + 1;
-            } else {
-                if (lo[axis] == 0) continue;
-                slab_lo[axis] = slab_hi[axis] = lo[axis] - 1;
-            }
-            const uvec2 slab = ldcMaskBox(slab_lo, slab_hi);
-            if ((mask.x & slab.x) == 0u && (mask.y & slab.y) == 0u) {
-                lo = min(lo, slab_lo);
-                hi = max(hi, slab_hi);
-            }
-        }
-    const uvec3 l = uvec3(lo), h = uvec3(hi);
-    return l.x | l.y << 2 | l.z << 4 | h.x << 6 | h.y << 8 | h.z << 10;
+    uvec2 box = index < 32u ? uvec2(1u << index, 0u) : uvec2(0u, 1u << (index - 32u));
+    for (int round = 0; round < 3; round++) {
+        // A box moved by one cell is the box and its next slab: what it adds must be free.
+        ldcGrowFace(box, ldcMaskDown(box, 1u), uvec2(0x11111111u), mask);
+        ldcGrowFace(box, ldcMaskUp(box, 1u), uvec2(0x88888888u), mask);
+        ldcGrowFace(box, ldcMaskDown(box, 4u), uvec2(0x000f000fu), mask);
+        ldcGrowFace(box, ldcMaskUp(box, 4u), uvec2(0xf000f000u), mask);
+        ldcGrowFace(box, ldcMaskDown(box, 16u), uvec2(0x0000ffffu, 0u), mask);
+        ldcGrowFace(box, ldcMaskUp(box, 16u), uvec2(0u, 0xffff0000u), mask);
+    }
+    const uint first = box.x != 0u ? uint(findLSB(box.x)) : 32u + uint(findLSB(box.y));
+    const uint last = box.y != 0u ? 32u + uint(findMSB(box.y)) : uint(findMSB(box.x));
+    return first | last << 6u;
 }
 
 /// The sample of a triangle in a voxel, as the traversal reads it (see peelrayTrace); the `last` bit is still 0.

@@ -27,10 +27,9 @@ bool peelrayIntersectPrecise(vec3 origin, vec3 origin_low, vec3 direction, vec3 
     const vec2 u = peelrayTriple(direction, cx, cy, cz, bx, by, bz);
     const vec2 v = peelrayTriple(direction, ax, ay, az, cx, cy, cz);
     const vec2 w = peelrayTriple(direction, bx, by, bz, ax, ay, az);
-    // An area of 0 comes out as a few 2^-45 of its terms: a ray through a corner could then miss every triangle around it.
-    const float reach = max(max(max(abs(ax.x), abs(bx.x)), max(abs(cx.x), max(abs(ay.x), abs(by.x)))),
-                            max(max(abs(cy.x), abs(az.x)), max(abs(bz.x), abs(cz.x))));
-    const float zero = 1e-12 * max(abs(direction.x), max(abs(direction.y), abs(direction.z))) * reach * reach;
+    // An area of 0 comes out as a few 2^-46 of its terms: a ray through a corner could then miss every triangle around it.
+    const vec3 reach = max(max(abs(vec3(ax.x, ay.x, az.x)), abs(vec3(bx.x, by.x, bz.x))), abs(vec3(cx.x, cy.x, cz.x)));
+    const float zero = 1.2e-13 * dot(abs(direction), reach.yzx * reach.zxy);
     const vec3 edges = mix(vec3(u.x, v.x, w.x), vec3(0), lessThanEqual(abs(vec3(u.x, v.x, w.x)), vec3(zero)));
     const float det = edges.x + edges.y + edges.z;
     t = 0.0;

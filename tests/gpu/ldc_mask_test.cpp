@@ -116,23 +116,5 @@ TEST_F(LdcMaskProbe, BoxesAreEmptyHoldTheirCellAndCannotGrow) {
     EXPECT_GT(grown, 8000);
 }
 
-TEST_F(LdcMaskProbe, MaskBoxHasExactlyTheBoxesBits) {
-    struct Box {
-        ivec3 lo, hi;
-    };
-    std::vector<Box> in;  // all there are
-    for (uint32_t a = 0; a < 64; a++)
-        for (uint32_t b = 0; b < 64; b++)
-            if (glm::all(glm::lessThanEqual(cell_of(a), cell_of(b)))) in.push_back({cell_of(a), cell_of(b)});
-    ASSERT_EQ(in.size(), 1000u);
-    const auto out = probe<uvec2>("probe_ldc_mask_box", in);
-    for (size_t i = 0; i < in.size(); i++)
-        for (uint32_t k = 0; k < 64; k++) {
-            const ivec3 c = cell_of(k);
-            const bool inside = glm::all(glm::lessThanEqual(in[i].lo, c)) && glm::all(glm::lessThanEqual(c, in[i].hi));
-            ASSERT_EQ(word(out[i]) >> k & 1, uint64_t(inside));
-        }
-}
-
 }  // namespace
 }  // namespace peelray
