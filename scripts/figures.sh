@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# figures.sh [PROGRAM]: makes every picture of README.md and docs/, with the program itself.
-# On two CPU cores it takes some ten minutes, most of them for the README's picture.
+# figures.sh [PROGRAM [readme]]: makes the pictures of docs/, with the program itself; with "readme" those of README.md, too,
+# which have so many samples that they want a GPU (or half an hour).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${1:-build/release/peelray}
@@ -116,8 +116,12 @@ figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
 
-# README.md
-"$program" render builtin:teapots -o docs/teapots.png --size 1000x640 --eye 0.3,2.75,5.6 --look -0.02,0.32,0.1 --fov 36 \
-    --exposure 0.2 --spp 32
+if [ "${2:-}" = readme ]; then
+    effects=reflection,refraction,shadow,ambient
+    "$program" render builtin:glass -o docs/glass.png --size 960x600 --exposure 0.1 --spp 256 --bounces 10 --effects $effects
+    "$program" render builtin:teapots -o docs/teapots.png --size 960x600 --eye 0.3,2.75,5.6 --look -0.02,0.32,0.1 --fov 36 \
+        --exposure 0.2 --spp 256 --effects $effects
+    shrink docs/glass.png docs/teapots.png
+fi
 
-shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/scene_*.png docs/teapots.png
+shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/scene_*.png

@@ -185,7 +185,7 @@ TEST_F(SamplingProbe, SplitSumFactorsStayInRange) {
     EXPECT_NEAR(out[100].environment.y, 0.04, 0.02);
 }
 
-TEST_F(SamplingProbe, HashIsPcg3d) {
+TEST_F(SamplingProbe, HashIsPcg3dAndPairsAreR2) {
     std::vector<RandomIn> in{{{0, 0}, 0, 0}, {{1, 2}, 0, 3}};
     for (int i = 0; i < 1000; i++) in.push_back({{bits(), bits()}, bits(), bits()});
     const auto out = probe<RandomOut>("probe_random", in);
@@ -199,6 +199,11 @@ TEST_F(SamplingProbe, HashIsPcg3d) {
         for (auto& x : v) x ^= x >> 16;
         mix();
         ASSERT_EQ(out[i].hash, uvec3(v[0], v[1], v[2]));
+        // Roberts' R2 sequence: steps of 1/g and 1/g², g the plastic number, the root of g³ = g + 1.
+        for (int k = 0; k < 2; k++) {
+            const auto step = uint32_t(std::llround(4294967296.0 / std::pow(1.32471795724474602596, k + 1)));
+            ASSERT_EQ(out[i].pair[k], float((v[k] + step * in[i].index) >> 8) / 16777216.0f);
+        }
         ASSERT_TRUE(out[i].pair.x >= 0 && out[i].pair.x < 1 && out[i].pair.y >= 0 && out[i].pair.y < 1);
     }
 }

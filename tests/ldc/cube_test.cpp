@@ -243,8 +243,9 @@ TEST_F(CubeTest, OverflowsGrowAndAreRedone) {
         const vec3 centre = random.point(vec3(1)), reach(0.06f);
         many.add(centre + random.point(reach), centre + random.point(reach), centre + random.point(reach));
     }
-    // 300 triangles in each of some 2000 voxels: more long lists than guessed.
-    for (int i = 0; i < 300; i++) deep.add({-1, -1, -1}, {1, 0.9f, -0.8f}, {-0.7f, 0.8f, 1});
+    // 260 triangles in each of some 1300 voxels: more long lists than guessed.
+    deep.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
+    for (int i = 0; i < 260; i++) deep.add({-0.5f, -0.5f, -0.5f}, {0.5f, 0.45f, -0.4f}, {-0.35f, 0.4f, 0.5f});
     small.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
     const struct {
         const Mesh3& mesh;
