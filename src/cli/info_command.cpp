@@ -14,15 +14,19 @@ std::string joined(const std::vector<std::string>& names) {
     return text.empty() ? "none" : text;
 }
 
-std::string named(const std::string& name) { return name.empty() ? "(no name)" : printable(name); }
+std::string named(const std::string& name) {
+    return name.empty() ? "(no name)" : printable(name);
+}
 
 std::string describe(const Material& m) {
-    std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x, m.base_color.y,
-                                   m.base_color.z, m.metallic, m.roughness);
+    std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
+                                   m.base_color.y, m.base_color.z, m.metallic, m.roughness);
     if (m.base_color_texture >= 0) text += fmt::format(", texture {}", m.base_color_texture);
-    if (m.emissive != glm::vec3(0)) text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);
+    if (m.emissive != glm::vec3(0))
+        text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);
     if (m.transmission > 0)
-        text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior, m.thickness > 0 ? "volume" : "thin wall");
+        text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior,
+                            m.thickness > 0 ? "volume" : "thin wall");
     if (m.unlit) text += ", unlit";
     return text;
 }
@@ -42,8 +46,8 @@ void run_info(const std::string& name) {
     fmt::print("scene       {}\n", scene.name);
     fmt::print("triangles   {} ({} without area)\n", geometry.triangles.size(), geometry.zero_area);
     fmt::print("vertices    {}\n", geometry.positions.size());
-    fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y, geometry.lower.z,
-               geometry.upper.x, geometry.upper.y, geometry.upper.z);
+    fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y,
+               geometry.lower.z, geometry.upper.x, geometry.upper.y, geometry.upper.z);
     fmt::print("nodes       {}\n", scene.nodes.size());
     fmt::print("meshes      {} ({} primitives)\n", scene.meshes.size(), primitives);
     for (const Mesh& mesh : scene.meshes) {
@@ -54,16 +58,19 @@ void run_info(const std::string& name) {
     fmt::print("materials   {}\n", scene.materials.size());
     for (const Material& material : scene.materials) fmt::print("  {}: {}\n", named(material.name), describe(material));
     fmt::print("textures    {}\n", scene.textures.size());
-    for (const Texture& texture : scene.textures) fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
+    for (const Texture& texture : scene.textures)
+        fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
     fmt::print("cameras     {}\n", scene.cameras.size());
     for (const Camera& camera : scene.cameras)
         fmt::print("  {}: eye {:.4g} {:.4g} {:.4g}, {}\n", named(camera.name), camera.eye.x, camera.eye.y, camera.eye.z,
-                   camera.orthographic_height > 0 ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
-                                                  : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f));
+                   camera.orthographic_height > 0
+                       ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
+                       : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f));
     fmt::print("lights      {}\n", scene.lights.size());
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());
-    for (const Animation& animation : scene.animations) fmt::print("  {}: {:.3g} s\n", named(animation.name), animation.duration);
+    for (const Animation& animation : scene.animations)
+        fmt::print("  {}: {:.3g} s\n", named(animation.name), animation.duration);
     fmt::print("extensions used           {}\n", joined(scene.extensions_used));
     fmt::print("extensions without effect {}\n", joined(scene.extensions_unsupported));
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
@@ -73,7 +80,8 @@ void run_devices() {
     for (const DeviceInfo& device : list_devices()) {
         fmt::print("{}: {}\n", device.index, device.name);
         fmt::print("   {}, Vulkan {}, driver {}, {:.1f} GiB{}\n", device.kind, device.api_version, device.driver,
-                   double(device.memory) / (1ull << 30), device.usable ? "" : fmt::format("; not usable: lacks {}", device.lacking));
+                   double(device.memory) / (1ull << 30),
+                   device.usable ? "" : fmt::format("; not usable: lacks {}", device.lacking));
     }
 }
 

@@ -27,11 +27,13 @@ Environment choose_environment(const RenderArguments& a, const Scene& scene) {
 }
 
 const Camera& find_camera(const Scene& scene, const std::string& name) {
-    if (scene.cameras.empty()) fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
+    if (scene.cameras.empty())
+        fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
     std::string names;
     for (size_t i = 0; i < scene.cameras.size(); i++) {
         if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
-        names += fmt::format("{}{}: {}", i ? ", " : "", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+        names += fmt::format("{}{}: {}", i ? ", " : "", i,
+                             scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
     }
     fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
 }
@@ -77,7 +79,8 @@ void override_material(Scene& scene, const std::string& name, const Geometry& ge
 /// --floor: two triangles just below the scene.
 void add_floor(Scene& scene, Geometry& geometry) {
     const glm::vec3 size = geometry.upper - geometry.lower, centre = 0.5f * (geometry.lower + geometry.upper);
-    const float half = 1.5f * std::max({size.x, size.y, size.z}), y = geometry.lower.y - 1e-4f * std::max({size.x, size.y, size.z});
+    const float half = 1.5f * std::max({size.x, size.y, size.z}),
+                y = geometry.lower.y - 1e-4f * std::max({size.x, size.y, size.z});
     Material material;
     material.name = "floor";
     material.base_color = glm::vec3(0.35f, 0.36f, 0.38f);
@@ -104,7 +107,8 @@ enum class Format { png, exr, hdr };
 
 Format format_of(const fs::path& path) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     if (extension == ".png") return Format::png;
     if (extension == ".exr") return Format::exr;
     if (extension == ".hdr") return Format::hdr;
@@ -125,15 +129,19 @@ void write_aovs(const RenderResult& result, const std::vector<std::string>& name
     };
     for (const std::string& name : names) {
         const fs::path path = aov_path(output, name);
-        const auto write = [&](const std::vector<std::string>& channels, const std::vector<std::vector<float>>& values) {
+        const auto write = [&](const std::vector<std::string>& channels,
+                               const std::vector<std::vector<float>>& values) {
             write_exr_channels(path, result.width, result.height, channels, values);
         };
         if (name == "depth") write({"Z"}, {a.depth});
         if (name == "triangle") write({"triangle"}, {a.triangle});
         if (name == "material") write({"material"}, {a.material});
-        if (name == "normal") write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
-        if (name == "albedo") write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
-        if (name == "position") write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
+        if (name == "normal")
+            write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
+        if (name == "albedo")
+            write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
+        if (name == "position")
+            write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
     }
 }
 
@@ -156,17 +164,23 @@ void check_ranges(const RenderArguments& a) {
     finite(a.look, "--look");
     finite(a.up, "--up");
     finite(a.background, "--background");
-    if (a.background && glm::any(glm::lessThan(*a.background, glm::vec3(0)))) fail("a background cannot be darker than black: choose three numbers from 0 up (--background)");
-    if (a.fov && !(*a.fov > 0 && *a.fov < 180)) fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
-    if (a.size.x == 0 || a.size.y == 0) fail("a picture of {}x{} pixels is empty: choose at least 1x1 (--size)", a.size.x, a.size.y);
-    if (!(std::abs(a.exposure) <= 64)) fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
+    if (a.background && glm::any(glm::lessThan(*a.background, glm::vec3(0))))
+        fail("a background cannot be darker than black: choose three numbers from 0 up (--background)");
+    if (a.fov && !(*a.fov > 0 && *a.fov < 180))
+        fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
+    if (a.size.x == 0 || a.size.y == 0)
+        fail("a picture of {}x{} pixels is empty: choose at least 1x1 (--size)", a.size.x, a.size.y);
+    if (!(std::abs(a.exposure) <= 64))
+        fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
     if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
     if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
     check_repeat(a.repeat);
 }
 
 RenderSettings settings_of(const RenderArguments& a) {
-    const auto has = [&](const char* effect) { return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end(); };
+    const auto has = [&](const char* effect) {
+        return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end();
+    };
     RenderSettings settings;
     settings.width = a.size.x;
     settings.height = a.size.y;
@@ -188,7 +202,8 @@ RenderSettings settings_of(const RenderArguments& a) {
 }
 
 /// What a reader of the terminal wants to know, once.
-void report(const RenderArguments& a, const RenderResult& result, size_t triangles, const Device& device, double seconds) {
+void report(const RenderArguments& a, const RenderResult& result, size_t triangles, const Device& device,
+            double seconds) {
     const RenderStats& s = result.stats;
     const double rays = double(s.rays.primary + s.rays.secondary());
     fmt::print("{}: {}x{}, {} triangles, {}", a.output.string(), result.width, result.height, triangles,

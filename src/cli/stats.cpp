@@ -11,11 +11,15 @@ namespace peelray {
 using Json = nlohmann::ordered_json;
 
 Json device_stats(const Device& device) {
-    return {{"device", device.info().name}, {"kind", device.info().kind}, {"driver", device.info().driver},
-            {"api_version", device.info().api_version}, {"commit", build_commit()}};
+    return {{"device", device.info().name},
+            {"kind", device.info().kind},
+            {"driver", device.info().driver},
+            {"api_version", device.info().api_version},
+            {"commit", build_commit()}};
 }
 
-Json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes, uint64_t scratch, const char* sampling) {
+Json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes, uint64_t scratch,
+                const char* sampling) {
     const glm::vec3 upper = grid.origin + glm::vec3(grid.dims) * grid.voxel;
     return {{"n", resolution},
             {"voxels", {grid.dims.x, grid.dims.y, grid.dims.z}},
@@ -49,14 +53,21 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
         if (pass.name == "shadow") shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
-    json["rays"] = {{"primary", s.rays.primary}, {"reflection", s.rays.reflection}, {"refraction", s.rays.refraction},
-                    {"shadow", s.rays.shadow}, {"ambient", s.rays.ambient}};
+    json["rays"] = {{"primary", s.rays.primary},
+                    {"reflection", s.rays.reflection},
+                    {"refraction", s.rays.refraction},
+                    {"shadow", s.rays.shadow},
+                    {"ambient", s.rays.ambient}};
     json["mrays_per_second"] = {{"reflection_and_refraction", rate(s.rays.reflection + s.rays.refraction, trace_ms)},
                                 {"shadow_and_ambient_with_shading", rate(s.rays.shadow + s.rays.ambient, shadow_ms)}};
     if (s.ldc)
-        json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes, s.hit == HitTest::exact ? "conservative" : "centre");
+        json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes,
+                                 s.hit == HitTest::exact ? "conservative" : "centre");
     json["hit"] = s.ldc ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
-    json["memory_bytes"] = {{"scene", s.scene_bytes}, {"cube", s.cube_bytes}, {"build_scratch", s.scratch_bytes}, {"frame", s.frame_bytes},
+    json["memory_bytes"] = {{"scene", s.scene_bytes},
+                            {"cube", s.cube_bytes},
+                            {"build_scratch", s.scratch_bytes},
+                            {"frame", s.frame_bytes},
                             {"peak", s.peak_bytes}};
     json["redone"] = s.redone;
     return json;

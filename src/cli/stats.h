@@ -12,8 +12,8 @@ namespace peelray {
 /// Device, driver, API version and the build's commit.
 nlohmann::ordered_json device_stats(const Device& device);
 /// The cube: N, box, samples, layers, bytes, builder.
-nlohmann::ordered_json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes, uint64_t scratch,
-                                  const char* sampling);
+nlohmann::ordered_json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes,
+                                  uint64_t scratch, const char* sampling);
 /// All of a rendered picture.
 nlohmann::ordered_json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry);
 /// Writes indented JSON, atomically. Throws Error if unwritable.

@@ -10,6 +10,80 @@
 
 namespace peelray {
 
+namespace {
+
+/// What a run of `peelray trace` found out.
+struct Traced {
+    std::vector<HitRecord> hits;
+    double trace_ms = 0;  ///< median over the repetitions
+    double build_ms = 0;
+    std::vector<PassTime> build_passes;
+    size_t found = 0;
+};
+
+/// Traces all rays in batches, so that any number of them fits.
+Traced trace_rays(Device& device, const Geometry& geometry, const std::vector<RayRecord>& rays,
+                  const AutoChoice& choice, const TraceArguments& a, ComputeBuilder& builder, Cube& cube) {
+    static_assert(sizeof(RayRecord) == sizeof(Ray) && sizeof(HitRecord) == sizeof(Hit));
+    Traced result;
+    TriangleBuffers triangles(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper);
+    Commands commands(device);
+    builder.build(commands, triangles, cube, choice.ldc, sampling_for(choice.hit));
+    result.build_passes = commands.times();
+    result.build_ms = commands.elapsed_ms();
+
+    const size_t batch = std::min<size_t>(std::max<size_t>(rays.size(), 1), 2u << 20);
+    Buffer ray_buffer(device, "rays", batch * sizeof(Ray)), hit_buffer(device, "hits", batch * sizeof(Hit));
+    result.hits.resize(rays.size());
+    std::vector<double> times(a.repeat, 0.0);
+    Progress progress("tracing", double(rays.size()));
+    for (size_t first = 0; first < rays.size(); first += batch) {
+        const size_t count = std::min(batch, rays.size() - first);
+        commands.upload(ray_buffer, std::span<const RayRecord>(&rays[first], count));
+        const uint32_t warm_up = a.repeat > 1 ? 1 : 0;
+        for (uint32_t i = 0; i < a.repeat + warm_up; i++) {
+            record_trace(commands, device, cube, triangles, {ray_buffer, nullptr, uint32_t(count)}, hit_buffer,
+                         choice.hit, a.any_hit);
+            commands.submit();
+            if (i >= warm_up) times[i - warm_up] += commands.elapsed_ms();
+        }
+        const auto part = commands.download<HitRecord>(hit_buffer, count);
+        std::copy(part.begin(), part.end(), result.hits.begin() + ptrdiff_t(first));
+        progress.update(double(first + count));
+    }
+    std::nth_element(times.begin(), times.begin() + ptrdiff_t(times.size() / 2), times.end());
+    result.trace_ms = times[times.size() / 2];
+    for (HitRecord& hit : result.hits) {
+        if (hit.triangle != ~0u)
+            result.found++;
+        else
+            hit.u = hit.v = 0;  // a miss carries no weights
+    }
+    return result;
+}
+
+nlohmann::ordered_json trace_stats(const Device& device, const Geometry& geometry, const Traced& traced,
+                                   const AutoChoice& choice, bool any_hit, const Cube& cube,
+                                   const ComputeBuilder& builder) {
+    nlohmann::ordered_json json = device_stats(device);
+    json["triangles"] = geometry.triangles.size();
+    json["rays"] = traced.hits.size();
+    json["hits"] = traced.found;
+    json["hit"] = choice.hit == HitTest::exact ? "exact" : "planar";
+    json["any_hit"] = any_hit;
+    json["build_ms"] = traced.build_ms;
+    for (const PassTime& time : traced.build_passes) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
+    json["passes"].push_back({{"name", "trace"}, {"ms", traced.trace_ms}});
+    json["trace_ms"] = traced.trace_ms;
+    json["mrays_per_second"] = nullptr;
+    if (traced.trace_ms > 0) json["mrays_per_second"] = double(traced.hits.size()) / traced.trace_ms * 1e-3;
+    json["ldc"] = cube_stats(cube.grid, cube.counts, choice.ldc, cube.bytes().total(), builder.scratch_bytes(),
+                             choice.hit == HitTest::exact ? "conservative" : "centre");
+    return json;
+}
+
+}  // namespace
+
 void run_trace(const TraceArguments& a) {
     a.tracing.check();
     check_repeat(a.repeat);
@@ -27,77 +101,17 @@ void run_trace(const TraceArguments& a) {
     const AutoChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
     Device device({a.device.device, a.device.validate});
-    TriangleBuffers triangles(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper);
     ComputeBuilder builder(device);
     Cube cube;
-    Commands commands(device);
-    builder.build(commands, triangles, cube, choice.ldc, sampling_for(choice.hit));
-    const auto build_times = commands.times();
-    const double build_ms = commands.elapsed_ms();
-
-    // Rays go in batches, so that any number of them fits.
-    static_assert(sizeof(RayRecord) == sizeof(Ray) && sizeof(HitRecord) == sizeof(Hit));
-    const size_t batch = std::min<size_t>(std::max<size_t>(rays.size(), 1), 2u << 20);
-    Buffer ray_buffer(device, "rays", batch * sizeof(Ray)), hit_buffer(device, "hits", batch * sizeof(Hit));
-    std::vector<HitRecord> hits(rays.size());
-    std::vector<double> times(std::max(a.repeat, 1u), 0.0);
-    Progress progress("tracing", double(rays.size()));
-    for (size_t first = 0; first < rays.size(); first += batch) {
-        const size_t count = std::min(batch, rays.size() - first);
-        commands.upload(ray_buffer, std::span<const RayRecord>(&rays[first], count));
-        for (uint32_t i = 0; i < a.repeat + (a.repeat > 1 ? 1 : 0); i++) {
-            record_trace(commands, device, cube, triangles, {ray_buffer, nullptr, uint32_t(count)}, hit_buffer, choice.hit, a.any_hit);
-            commands.submit();
-            // With repetitions the first one warms up.
-            if (a.repeat > 1 && i == 0) continue;
-            times[a.repeat > 1 ? i - 1 : 0] += commands.elapsed_ms();
-        }
-        const auto part = commands.download<HitRecord>(hit_buffer, count);
-        std::copy(part.begin(), part.end(), hits.begin() + ptrdiff_t(first));
-        progress.update(double(first + count));
-    }
-    // A miss carries no barycentric weights; planar hits know none of their own.
-    for (size_t i = 0; i < hits.size(); i++)
-        if (hits[i].triangle == ~0u) hits[i].u = hits[i].v = 0;
-    if (choice.hit == HitTest::planar) {
-        for (size_t i = 0; i < hits.size(); i++) {
-            if (hits[i].triangle == ~0u) continue;
-            const glm::uvec3 corners = geometry.triangles[hits[i].triangle];
-            const glm::dvec3 p0 = geometry.positions[corners.x], e = glm::dvec3(geometry.positions[corners.y]) - p0,
-                             f = glm::dvec3(geometry.positions[corners.z]) - p0;
-            const glm::dvec3 p = glm::dvec3(rays[i].ox, rays[i].oy, rays[i].oz) + double(hits[i].t) * glm::dvec3(rays[i].dx, rays[i].dy, rays[i].dz) - p0;
-            const glm::dvec3 n = glm::cross(e, f);
-            const double scale = 1 / glm::dot(n, n);
-            glm::dvec2 uv(glm::dot(glm::cross(p, f), n) * scale, glm::dot(glm::cross(e, p), n) * scale);
-            uv = glm::clamp(uv, 0.0, 1.0);
-            uv /= std::max(1.0, uv.x + uv.y);
-            hits[i].u = float(uv.x);
-            hits[i].v = float(uv.y);
-        }
-    }
+    const Traced traced = trace_rays(device, geometry, rays, choice, a, builder, cube);
     device.check_validation();
-    write_hits(a.hits, hits);
+    write_hits(a.hits, traced.hits);
+    if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced, choice, a.any_hit, cube, builder));
 
-    std::nth_element(times.begin(), times.begin() + ptrdiff_t(times.size() / 2), times.end());
-    const double trace_ms = times[times.size() / 2];
-    const size_t found = size_t(std::count_if(hits.begin(), hits.end(), [](const HitRecord& hit) { return hit.triangle != ~0u; }));
-    if (!a.stats.empty()) {
-        nlohmann::ordered_json json = device_stats(device);
-        json["triangles"] = geometry.triangles.size();
-        json["rays"] = rays.size();
-        json["hits"] = found;
-        json["hit"] = choice.hit == HitTest::exact ? "exact" : "planar";
-        json["any_hit"] = a.any_hit;
-        json["build_ms"] = build_ms;
-        for (const PassTime& time : build_times) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
-        json["trace_ms"] = trace_ms;
-        json["mrays_per_second"] = trace_ms > 0 ? nlohmann::ordered_json(double(rays.size()) / trace_ms * 1e-3) : nlohmann::ordered_json(nullptr);
-        json["ldc"] = cube_stats(cube.grid, cube.counts, choice.ldc, cube.bytes().total(), builder.scratch_bytes(),
-                                 choice.hit == HitTest::exact ? "conservative" : "centre");
-        write_json(a.stats, json);
-    }
-    fmt::print("{}: {} rays, {} hits ({}), cube {}", a.hits.string(), rays.size(), found, choice.hit == HitTest::exact ? "exact" : "planar", choice.ldc);
-    if (device.timestamp_period() > 0) fmt::print("; on the GPU: cube {:.2f} ms, rays {:.2f} ms", build_ms, trace_ms);
+    fmt::print("{}: {} rays, {} hits ({}), cube {}", a.hits.string(), rays.size(), traced.found,
+               choice.hit == HitTest::exact ? "exact" : "planar", choice.ldc);
+    if (device.timestamp_period() > 0)
+        fmt::print("; on the GPU: cube {:.2f} ms, rays {:.2f} ms", traced.build_ms, traced.trace_ms);
     fmt::print("; {}\n", device.info().name);
 }
 

@@ -11,7 +11,8 @@
 
 namespace peelray {
 
-/// A whole text that is one number: no blanks, no leading plus. T: a float type ("inf" and "nan" count) or an integer one.
+/// A whole text that is one number: no blanks, no leading plus. T: a float type ("inf" and "nan" count) or an integer
+/// one.
 template <typename T>
 std::optional<T> parse_number(std::string_view text) {
     T value{};

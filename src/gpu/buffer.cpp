@@ -10,8 +10,11 @@ namespace peelray {
 Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
     : device_(&device), name_(std::move(name)), bytes_(std::max<uint64_t>(bytes, 16)) {
     if (where == Where::device && bytes_ > device.limits().maxStorageBufferRange)
-        fail("{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller --ldc or --size, or another --device",
-             name_, double(bytes_) / (1 << 20), device.info().name, double(device.limits().maxStorageBufferRange) / (1 << 20));
+        fail(
+            "{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller --ldc or --size, "
+            "or another --device",
+            name_, double(bytes_) / (1 << 20), device.info().name,
+            double(device.limits().maxStorageBufferRange) / (1 << 20));
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes_;
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
@@ -22,13 +25,15 @@ Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
         device.vk.vkGetBufferMemoryRequirements(device.handle, handle_, &needs);
         const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
         const bool device_local = where == Where::device;
-        memory_ = device.allocate(needs, device_local ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) : host,
-                                  where == Where::readback ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT) : 0, name_);
+        memory_ = device.allocate(
+            needs, device_local ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) : host,
+            where == Where::readback ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT) : 0, name_);
         allocated_ = needs.size;
         check_vulkan(device.vk.vkBindBufferMemory(device.handle, handle_, memory_, 0), "binding the buffer " + name_);
         if (!device_local) {
             void* pointer = nullptr;
-            check_vulkan(device.vk.vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &pointer), "mapping the buffer " + name_);
+            check_vulkan(device.vk.vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &pointer),
+                         "mapping the buffer " + name_);
             mapped_ = static_cast<std::byte*>(pointer);
         }
     } catch (...) {
@@ -67,8 +72,8 @@ void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64
     buffer = Buffer(device, name, bytes);
 }
 
-Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage,
-                 VkImageAspectFlags aspect)
+Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format,
+                 VkImageUsageFlags usage, VkImageAspectFlags aspect)
     : device_(&device), width_(width), height_(height) {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;

@@ -8,13 +8,15 @@
 
 namespace peelray {
 
-/// A device-local storage buffer (also transfer source and target, and indirect arguments). Movable, freed when destroyed.
+/// A device-local storage buffer (also transfer source and target, and indirect arguments). Movable, freed when
+/// destroyed.
 class Buffer {
   public:
     enum class Where { device, upload, readback };  ///< upload and readback are mapped staging memory
 
     Buffer() = default;
-    /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name` tells for what.
+    /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name`
+    /// tells for what.
     Buffer(Device& device, std::string name, uint64_t bytes, Where where = Where::device);
     ~Buffer() { reset(); }
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
@@ -43,8 +45,8 @@ void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64
 class Image2D {
   public:
     Image2D() = default;
-    Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage,
-            VkImageAspectFlags aspect);
+    Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format,
+            VkImageUsageFlags usage, VkImageAspectFlags aspect);
     ~Image2D() { reset(); }
     Image2D(Image2D&& other) noexcept { *this = std::move(other); }
     Image2D& operator=(Image2D&& other) noexcept;

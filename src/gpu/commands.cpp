@@ -17,10 +17,11 @@ constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
 }  // namespace
 
 Commands::Commands(Device& device) : device_(device) {
-    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                 device.queue_family};
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                 VK_COMMAND_POOL_CREATE_TRANSIENT_BIT, device.queue_family};
     check_vulkan(device.vk.vkCreateCommandPool(device.handle, &pool, nullptr, &pool_), "creating a command pool");
-    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
+                                     VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
     check_vulkan(device.vk.vkAllocateCommandBuffers(device.handle, &info, &commands_), "creating a command buffer");
     VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     check_vulkan(device.vk.vkCreateFence(device.handle, &fence, nullptr, &fence_), "creating a fence");
@@ -41,7 +42,8 @@ void Commands::begin() {
     set_pool_ = 0;
     timed_.clear();
     accesses_.clear();
-    VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+    VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
+                                  VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     check_vulkan(device_.vk.vkBeginCommandBuffer(commands_, &info), "recording commands");
     barrier_if(true);  // earlier submissions' writes
 }
@@ -72,33 +74,49 @@ VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
     for (;; set_pool_++) {
         if (set_pool_ == set_pools_.size()) {
             const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet};
-            VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 1, &size};
+            VkDescriptorPoolCreateInfo info{
+                VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 1, &size};
             VkDescriptorPool pool = VK_NULL_HANDLE;
-            check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool), "creating a descriptor pool");
+            check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool),
+                         "creating a descriptor pool");
             set_pools_.push_back(pool);
         }
-        VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, set_pools_[set_pool_], 1, &layout};
+        VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, set_pools_[set_pool_],
+                                         1, &layout};
         VkDescriptorSet set = VK_NULL_HANDLE;
         const VkResult result = device_.vk.vkAllocateDescriptorSets(device_.handle, &info, &set);
         if (result == VK_SUCCESS) return set;
-        if (result != VK_ERROR_OUT_OF_POOL_MEMORY && result != VK_ERROR_FRAGMENTED_POOL) check_vulkan(result, "allocating descriptors");
+        if (result != VK_ERROR_OUT_OF_POOL_MEMORY && result != VK_ERROR_FRAGMENTED_POOL)
+            check_vulkan(result, "allocating descriptors");
     }
 }
 
 VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard) {
     const auto& wanted = pass.interface().bindings;
     if (bindings.size() != wanted.size())
-        fail("the pass {} has {} bindings but was given {} (a programming error)", pass.name(), wanted.size(), bindings.size());
+        fail("the pass {} has {} bindings but was given {} (a programming error)", pass.name(), wanted.size(),
+             bindings.size());
     const VkDescriptorSet set = allocate_set(pass.set_layout());
     std::vector<VkDescriptorBufferInfo> infos(wanted.size());
     std::vector<VkWriteDescriptorSet> writes;
     for (size_t i = 0; i < wanted.size(); i++) {
-        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted[i].name; });
-        if (given == bindings.end()) fail("the pass {} was not given '{}' (a programming error)", pass.name(), wanted[i].name);
-        if (!given->buffer) fail("the pass {} was given no buffer for '{}' (a programming error)", pass.name(), wanted[i].name);
+        const auto given =
+            std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted[i].name; });
+        if (given == bindings.end())
+            fail("the pass {} was not given '{}' (a programming error)", pass.name(), wanted[i].name);
+        if (!given->buffer)
+            fail("the pass {} was given no buffer for '{}' (a programming error)", pass.name(), wanted[i].name);
         infos[i] = {given->buffer.handle(), 0, VK_WHOLE_SIZE};
-        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, wanted[i].binding, 0, 1,
-                                   VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, nullptr, &infos[i], nullptr};
+        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   nullptr,
+                                   set,
+                                   wanted[i].binding,
+                                   0,
+                                   1,
+                                   VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                   nullptr,
+                                   &infos[i],
+                                   nullptr};
         writes.push_back(write);
         touch(given->buffer.handle(), wanted[i].reads, wanted[i].writes, hazard);
     }
@@ -108,22 +126,23 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bi
 
 void Commands::mark(std::span<const Binding> bindings, const PassBase& pass) {
     for (const auto& wanted : pass.interface().bindings) {
-        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
+        const auto given =
+            std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
         auto& access = accesses_[given->buffer.handle()];
         access.read |= wanted.reads;
         access.written |= wanted.writes;
     }
 }
 
-void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
-                      const Buffer* arguments, uint64_t offset) {
+void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
+                      Groups groups, const Buffer* arguments, uint64_t offset) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
              pass.interface().push_constant_bytes, bytes);
     const auto& most = device_.limits().maxComputeWorkGroupCount;
     if (!arguments && (groups.x > most[0] || groups.y > most[1] || groups.z > most[2]))
-        fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc", pass.name(), groups.x,
-             groups.y, groups.z, device_.info().name);
+        fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc",
+             pass.name(), groups.x, groups.y, groups.z, device_.info().name);
     begin();
     bool hazard = false;
     const VkDescriptorSet set = bind(pass, bindings, hazard);
@@ -135,7 +154,8 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     label(pass.name());
     begin_timer(pass.name());
     device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
-    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &set, 0, nullptr);
+    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &set, 0,
+                                       nullptr);
     device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
     if (arguments)
         device_.vk.vkCmdDispatchIndirect(commands_, arguments->handle(), offset);
@@ -145,8 +165,8 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     end_label();
 }
 
-void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, uint32_t vertices,
-                           const Image2D& color, const Image2D& depth, const Buffer& target) {
+void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
+                           uint32_t vertices, const Image2D& color, const Image2D& depth, const Buffer& target) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
              pass.interface().push_constant_bytes, bytes);
@@ -160,7 +180,8 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
 
     auto transition = [&](VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) {
         VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-        const VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        const VkPipelineStageFlags2 stages =
+            VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         barrier.srcStageMask = barrier.dstStageMask = stages;
         barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
         barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -176,8 +197,10 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     };
     label(pass.name());
     begin_timer(pass.name());
-    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    transition(depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    transition(depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
 
     VkRenderingAttachmentInfo color_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     color_info.imageView = color.view();
@@ -203,16 +226,19 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     device_.vk.vkCmdSetViewport(commands_, 0, 1, &viewport);
     device_.vk.vkCmdSetScissor(commands_, 0, 1, &scissor);
     device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.pipeline());
-    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0, nullptr);
+    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0,
+                                       nullptr);
     device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
     device_.vk.vkCmdDraw(commands_, vertices, 1, 0, 0);
     device_.vk.vkCmdEndRendering(commands_);
 
-    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {color.width(), color.height(), 1};
-    device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1, &region);
+    device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
+                                      1, &region);
     end_timer();
     end_label();
 }
@@ -287,12 +313,13 @@ void Commands::end_timer() {
         const std::string name = timed_.back();
         const auto start = std::chrono::steady_clock::now();
         flush();
-        host_times_.push_back({name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
+        host_times_.push_back(
+            {name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
         return;
     }
     const size_t index = timed_.size() - 1;
-    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, query_pools_[index / kTimersPerPool],
-                                    uint32_t(2 * (index % kTimersPerPool) + 1));
+    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                    query_pools_[index / kTimersPerPool], uint32_t(2 * (index % kTimersPerPool) + 1));
 }
 
 void Commands::read_times() {
@@ -300,8 +327,9 @@ void Commands::read_times() {
     elapsed_ms_ = 0;
     uint64_t first = 0, ticks[2] = {};
     for (size_t i = 0; i < timed_.size(); i++) {
-        check_vulkan(device_.vk.vkGetQueryPoolResults(device_.handle, query_pools_[i / kTimersPerPool], uint32_t(2 * (i % kTimersPerPool)), 2,
-                                                      sizeof ticks, ticks, 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        check_vulkan(device_.vk.vkGetQueryPoolResults(device_.handle, query_pools_[i / kTimersPerPool],
+                                                      uint32_t(2 * (i % kTimersPerPool)), 2, sizeof ticks, ticks, 8,
+                                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
                      "reading timestamps");
         times_.push_back({timed_[i], double(ticks[1] - ticks[0]) * device_.timestamp_period() * 1e-6});
         if (i == 0) first = ticks[0];
@@ -349,7 +377,8 @@ void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> dat
     submit();
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
-        if (!staging_up_ || staging_up_.bytes() < bytes) staging_up_ = Buffer(device_, "upload staging", bytes, Buffer::Where::upload);
+        if (!staging_up_ || staging_up_.bytes() < bytes)
+            staging_up_ = Buffer(device_, "upload staging", bytes, Buffer::Where::upload);
         std::memcpy(staging_up_.mapped(), data.data() + done, bytes);
         copy(staging_up_, buffer, bytes, 0, offset + done);
         submit();
@@ -358,7 +387,8 @@ void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> dat
 }
 
 void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, uint64_t offset) {
-    if (offset + data.size() > buffer.bytes()) fail("a download of {} is too long (a programming error)", buffer.name());
+    if (offset + data.size() > buffer.bytes())
+        fail("a download of {} is too long (a programming error)", buffer.name());
     submit();
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);

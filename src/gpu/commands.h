@@ -36,8 +36,8 @@ struct PassTime {
     double ms;
 };
 
-/// A recording of passes and copies for one submission. Barriers are derived: a pass waits for earlier ones exactly when it
-/// touches what they wrote, or writes what they read (reflection knows readonly from writable bindings).
+/// A recording of passes and copies for one submission. Barriers are derived: a pass waits for earlier ones exactly
+/// when it touches what they wrote, or writes what they read (reflection knows readonly from writable bindings).
 class Commands {
   public:
     explicit Commands(Device& device);
@@ -45,20 +45,20 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// Runs a compute pass. Every binding of the shader must be given once, by its name; `params` must have the size of its
-    /// push-constant block (both are asserted).
+    /// Runs a compute pass. Every binding of the shader must be given once, by its name; `params` must have the size of
+    /// its push-constant block (both are asserted).
     template <typename Params>
     void run(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params, Groups groups) {
         record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, groups, nullptr, 0);
     }
     /// The same with the workgroup counts read on the GPU: three uint32 in `arguments` at byte `offset`.
     template <typename Params>
-    void run_indirect(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params, const Buffer& arguments,
-                      uint64_t offset = 0) {
+    void run_indirect(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params,
+                      const Buffer& arguments, uint64_t offset = 0) {
         record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, {}, &arguments, offset);
     }
-    /// Draws `vertices` vertices into `color` (R32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies the
-    /// colour to `target` (width·height uint32).
+    /// Draws `vertices` vertices into `color` (R32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies
+    /// the colour to `target` (width·height uint32).
     template <typename Params>
     void draw(const RasterPass& pass, std::initializer_list<Binding> bindings, const Params& params, uint32_t vertices,
               const Image2D& color, const Image2D& depth, const Buffer& target) {
@@ -79,7 +79,8 @@ class Commands {
     /// GPU times of the last submission in order of recording; empty where the device has no timestamps.
     const std::vector<PassTime>& times() const { return times_; }
 
-    /// From the first pass's start to the last one's end of the last submission, in GPU milliseconds; 0 without timestamps.
+    /// From the first pass's start to the last one's end of the last submission, in GPU milliseconds; 0 without
+    /// timestamps.
     double elapsed_ms() const { return elapsed_ms_; }
 
     /// Uploads through staging memory; submits at once.
@@ -106,8 +107,8 @@ class Commands {
     void mark(std::span<const Binding> bindings, const PassBase& pass);
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
                 const Buffer* arguments, uint64_t offset);
-    void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, uint32_t vertices,
-                     const Image2D& color, const Image2D& depth, const Buffer& target);
+    void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
+                     uint32_t vertices, const Image2D& color, const Image2D& depth, const Buffer& target);
     void begin_timer(const std::string& name);
     void end_timer();
     void label(const std::string& name);

@@ -20,13 +20,17 @@ struct Device::State {
 void check_vulkan(VkResult result, std::string_view what) {
     if (result == VK_SUCCESS) return;
     if (result == VK_ERROR_DEVICE_LOST)
-        fail("the Vulkan device was lost while {}: the driver gave up; try a smaller --size or --ldc, or another --device", what);
+        fail(
+            "the Vulkan device was lost while {}: the driver gave up; try a smaller --size or --ldc, or another "
+            "--device",
+            what);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
         fail("out of memory while {}: try a smaller --size or --ldc, or another --device", what);
     fail("Vulkan error {} while {}", int(result), what);
 }
 
-VKAPI_ATTR VkBool32 VKAPI_CALL Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                  VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     static_cast<Device*>(user)->validation_messages_.push_back(data->pMessage);
     return VK_FALSE;
@@ -36,7 +40,8 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     messenger.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    messenger.messageType =
+        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     messenger.pfnUserCallback = on_message;
     messenger.pUserData = this;
     instance_ = create_instance(options.validate, &messenger, labels);
@@ -46,7 +51,8 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         info_ = chosen.info;
         queue_family = chosen.queue_family;
         if (options.validate && labels)
-            check_vulkan(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_), "watching the validation layers");
+            check_vulkan(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
+                         "watching the validation layers");
         create_logical(options.validate);
     } catch (...) {
         if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
@@ -65,7 +71,8 @@ void Device::create_logical(bool validate) {
     timestamp_period_ = families[queue_family].timestampValidBits ? properties_.limits.timestampPeriod : 0;
 
     const float priority = 1;
-    VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, queue_family, 1, &priority};
+    VkDeviceQueueCreateInfo queue_info{
+        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, queue_family, 1, &priority};
     VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
     v13.synchronization2 = v13.dynamicRendering = v13.maintenance4 = VK_TRUE;
     VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
@@ -103,11 +110,12 @@ const RasterPass& Device::raster_pass(std::string_view shader) {
 
 void Device::check_validation() const {
     if (!validation_messages_.empty())
-        fail("the Vulkan validation layers complain ({} messages); the first: {}", validation_messages_.size(), validation_messages_.front());
+        fail("the Vulkan validation layers complain ({} messages); the first: {}", validation_messages_.size(),
+             validation_messages_.front());
 }
 
-VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
-                                std::string_view what) {
+VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
+                                VkMemoryPropertyFlags nice, std::string_view what) {
     int best = -1;
     for (uint32_t type = 0; type < memory_.memoryTypeCount; type++) {
         const auto flags = memory_.memoryTypes[type].propertyFlags;

@@ -17,17 +17,18 @@ class RasterPass;
 
 /// One physical device, as `peelray devices` lists it.
 struct DeviceInfo {
-    uint32_t index;           ///< position in this list: what --device takes
-    std::string name, kind;   ///< kind: "discrete", "integrated", "virtual", "CPU" or "other"
+    uint32_t index;          ///< position in this list: what --device takes
+    std::string name, kind;  ///< kind: "discrete", "integrated", "virtual", "CPU" or "other"
     std::string driver, api_version;
-    uint64_t memory;          ///< bytes of the largest device-local heap
-    bool usable;              ///< offers what Peelray needs
-    std::string lacking;      ///< what is missing, if not usable
+    uint64_t memory;      ///< bytes of the largest device-local heap
+    bool usable;          ///< offers what Peelray needs
+    std::string lacking;  ///< what is missing, if not usable
 };
 
 /// How a device is opened.
 struct DeviceOptions {
-    std::string select;     ///< index or part of the name (case-insensitive); empty: the first of discrete, integrated, virtual, CPU
+    std::string select;     ///< index or part of the name (case-insensitive); empty: the first of discrete, integrated,
+                            ///< virtual, CPU
     bool validate = false;  ///< Vulkan validation layers; every message is collected (Device::validation_messages)
 };
 
@@ -70,8 +71,8 @@ class Device {
     VkQueue queue = VK_NULL_HANDLE;
     uint32_t queue_family = 0;
     VolkDeviceTable vk{};
-    /// Software devices run passes lazily, so that their timestamps tell nothing: each pass is submitted alone there and timed
-    /// by the host's clock. Not under validation, which is to see the passes and their barriers together.
+    /// Software devices run passes lazily, so that their timestamps tell nothing: each pass is submitted alone there
+    /// and timed by the host's clock. Not under validation, which is to see the passes and their barriers together.
     bool immediate = false;
     bool labels = false;  ///< VK_EXT_debug_utils is on: passes name themselves
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
@@ -81,7 +82,8 @@ class Device {
   private:
     struct State;
     void create_logical(bool validate);
-    static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+    static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                     VkDebugUtilsMessageTypeFlagsEXT,
                                                      const VkDebugUtilsMessengerCallbackDataEXT*, void*);
 
     DeviceInfo info_;

@@ -34,16 +34,22 @@ bool instance_extension_available(const char* name) {
     vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
     std::vector<VkExtensionProperties> extensions(count);
     vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data());
-    return std::any_of(extensions.begin(), extensions.end(), [&](auto& e) { return !std::strcmp(e.extensionName, name); });
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](auto& e) { return !std::strcmp(e.extensionName, name); });
 }
 
 int rank(VkPhysicalDeviceType type) {
     switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: return 3;
-        default: return 4;
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return 0;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return 1;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return 2;
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            return 3;
+        default:
+            return 4;
     }
 }
 
@@ -84,8 +90,8 @@ PhysicalDevice describe(VkPhysicalDevice device) {
     result.info.name = p.deviceName;
     result.info.kind = kinds[rank(p.deviceType)];
     result.info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
-    result.info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion), VK_API_VERSION_MINOR(p.apiVersion),
-                                          VK_API_VERSION_PATCH(p.apiVersion));
+    result.info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(p.apiVersion),
+                                          VK_API_VERSION_MINOR(p.apiVersion), VK_API_VERSION_PATCH(p.apiVersion));
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(device, &memory);
     result.info.memory = 0;
@@ -103,14 +109,17 @@ VkInstance create_instance(bool validate, const VkDebugUtilsMessengerCreateInfoE
     load_vulkan();
     const char* layer = "VK_LAYER_KHRONOS_validation";
     if (validate && !layer_available(layer))
-        fail("--validate needs the Vulkan validation layers: install them (Debian/Ubuntu: package vulkan-validationlayers)");
+        fail(
+            "--validate needs the Vulkan validation layers: install them (Debian/Ubuntu: package "
+            "vulkan-validationlayers)");
     debug_utils = instance_extension_available(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
 
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     application.pApplicationName = "peelray";
     application.apiVersion = VK_API_VERSION_1_3;
-    // Synchronisation validation proves the derived barriers; the messenger here also hears of instance creation itself.
+    // Synchronisation validation proves the derived barriers; the messenger here also hears of instance creation
+    // itself.
     const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, messenger, 1, enabled};
     VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
@@ -151,9 +160,11 @@ std::vector<PhysicalDevice> physical_devices(VkInstance instance) {
 PhysicalDevice choose_device(VkInstance instance, const std::string& select) {
     const auto devices = physical_devices(instance);
     std::string names;
-    for (const auto& device : devices) names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", device.info.index, device.info.name);
+    for (const auto& device : devices)
+        names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", device.info.index, device.info.name);
     const PhysicalDevice* chosen = nullptr;
-    const bool number = !select.empty() && std::all_of(select.begin(), select.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool number =
+        !select.empty() && std::all_of(select.begin(), select.end(), [](unsigned char c) { return std::isdigit(c); });
     for (const auto& device : devices) {
         const bool match = select.empty() ? device.info.usable
                            : number       ? std::to_string(device.info.index) == select
@@ -163,8 +174,10 @@ PhysicalDevice choose_device(VkInstance instance, const std::string& select) {
     if (!chosen && !select.empty()) fail("no Vulkan device '{}': there is {} (see 'peelray devices')", select, names);
     if (!chosen) chosen = &devices.front();
     if (!chosen->info.usable)
-        fail("the Vulkan device '{}' lacks {}, which Peelray needs: update its driver or choose another --device (there is {})",
-             chosen->info.name, chosen->info.lacking, names);
+        fail(
+            "the Vulkan device '{}' lacks {}, which Peelray needs: update its driver or choose another --device (there "
+            "is {})",
+            chosen->info.name, chosen->info.lacking, names);
     return *chosen;
 }
 

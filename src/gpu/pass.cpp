@@ -36,7 +36,8 @@ void ShaderInterface::reflect(std::span<const uint32_t> code) {
         const auto flags = compiler.get_buffer_block_flags(resource.id);
         const ShaderBinding found{name, compiler.get_decoration(resource.id, spv::DecorationBinding),
                                   !flags.get(spv::DecorationNonReadable), !flags.get(spv::DecorationNonWritable)};
-        auto same = std::find_if(bindings.begin(), bindings.end(), [&](auto& other) { return other.binding == found.binding; });
+        auto same =
+            std::find_if(bindings.begin(), bindings.end(), [&](auto& other) { return other.binding == found.binding; });
         if (same == bindings.end()) {
             bindings.push_back(found);
         } else {
@@ -61,9 +62,11 @@ PassBase::~PassBase() {
 
 VkShaderModule PassBase::create_module(std::span<const uint32_t> code) {
     interface_.reflect(code);
-    VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, code.size_bytes(), code.data()};
+    VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, code.size_bytes(),
+                                  code.data()};
     VkShaderModule module = VK_NULL_HANDLE;
-    check_vulkan(device_.vk.vkCreateShaderModule(device_.handle, &info, nullptr, &module), "loading the shader " + name_);
+    check_vulkan(device_.vk.vkCreateShaderModule(device_.handle, &info, nullptr, &module),
+                 "loading the shader " + name_);
     return module;
 }
 
@@ -74,7 +77,8 @@ void PassBase::create_layout() {
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = uint32_t(bindings.size());
     set_info.pBindings = bindings.data();
-    check_vulkan(device_.vk.vkCreateDescriptorSetLayout(device_.handle, &set_info, nullptr, &set_layout_), "laying out " + name_);
+    check_vulkan(device_.vk.vkCreateDescriptorSetLayout(device_.handle, &set_info, nullptr, &set_layout_),
+                 "laying out " + name_);
 
     const VkPushConstantRange range{stages_, 0, interface_.push_constant_bytes};
     VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -93,25 +97,30 @@ Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const
 
     std::vector<VkSpecializationMapEntry> entries;
     for (uint32_t i = 0; i < constants.size(); i++) entries.push_back({i, i * 4, 4});
-    const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), constants.size() * 4, constants.data()};
+    const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), constants.size() * 4,
+                                              constants.data()};
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, module, "main",
-                  constants.empty() ? nullptr : &specialization};
+    info.stage = {
+        VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, module, "main",
+        constants.empty() ? nullptr : &specialization};
     info.layout = layout_;
     const VkResult result = device.vk.vkCreateComputePipelines(device.handle, cache, 1, &info, nullptr, &pipeline_);
     device.vk.vkDestroyShaderModule(device.handle, module, nullptr);
     check_vulkan(result, "compiling the shader " + name_);
 }
 
-RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader) : PassBase(device, std::string(shader)) {
+RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader)
+    : PassBase(device, std::string(shader)) {
     stages_ = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkShaderModule vertex = create_module(find_shader(name_ + ".vert"));
     VkShaderModule fragment = create_module(find_shader(name_ + ".frag"));
     create_layout();
 
     const VkPipelineShaderStageCreateInfo stage_infos[] = {
-        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_VERTEX_BIT, vertex, "main", nullptr},
-        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, fragment, "main", nullptr}};
+        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_VERTEX_BIT, vertex, "main",
+         nullptr},
+        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, fragment,
+         "main", nullptr}};
     VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
     assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -131,7 +140,8 @@ RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view s
     blend.attachmentCount = 1;
     blend.pAttachments = &attachment;
     const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, nullptr, 0, 2, states};
+    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, nullptr, 0, 2,
+                                             states};
     const VkFormat color = VK_FORMAT_R32_UINT;
     VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
     rendering.colorAttachmentCount = 1;

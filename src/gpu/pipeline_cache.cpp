@@ -40,7 +40,8 @@ std::vector<char> PipelineCache::unseal(const std::vector<char>& file) {
     std::memcpy(&header, file.data(), sizeof header);
     const char* data = file.data() + sizeof header;
     const size_t size = file.size() - sizeof header;
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) || header.size != size || header.checksum != fnv1a(data, size)) return {};
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) || header.size != size || header.checksum != fnv1a(data, size))
+        return {};
     return {data, data + size};
 }
 
@@ -56,7 +57,8 @@ std::filesystem::path PipelineCache::file_for(const VkPhysicalDeviceProperties& 
         return {};
     std::string uuid;
     for (uint8_t byte : properties.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
-    return folder / "peelray" / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", properties.vendorID, properties.deviceID, uuid);
+    return folder / "peelray" /
+           fmt::format("pipelines-{:04x}-{:04x}-{}.bin", properties.vendorID, properties.deviceID, uuid);
 }
 
 PipelineCache::PipelineCache(Device& device, bool on_disk) : device_(device) {
@@ -71,13 +73,15 @@ PipelineCache::PipelineCache(Device& device, bool on_disk) : device_(device) {
     VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
     info.initialDataSize = loaded_.size();
     info.pInitialData = loaded_.data();
-    check_vulkan(device.vk.vkCreatePipelineCache(device.handle, &info, nullptr, &cache_), "creating the pipeline cache");
+    check_vulkan(device.vk.vkCreatePipelineCache(device.handle, &info, nullptr, &cache_),
+                 "creating the pipeline cache");
 }
 
 PipelineCache::~PipelineCache() {
     size_t size = 0;
     std::vector<char> data;
-    if (!file_.empty() && device_.vk.vkGetPipelineCacheData(device_.handle, cache_, &size, nullptr) == VK_SUCCESS && size) {
+    if (!file_.empty() && device_.vk.vkGetPipelineCacheData(device_.handle, cache_, &size, nullptr) == VK_SUCCESS &&
+        size) {
         data.resize(size);
         if (device_.vk.vkGetPipelineCacheData(device_.handle, cache_, &size, data.data()) != VK_SUCCESS) data.clear();
     }

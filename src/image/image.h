@@ -25,32 +25,35 @@ struct Image8 {
     std::vector<uint32_t> pixels;  ///< red in the lowest byte
 };
 
-/// Reads Radiance (.hdr) or OpenEXR (.exr) by its content: RGB(A), Y, luminance-chroma, one channel (grey) or one layer's
-/// R, G, B; of several parts the first flat one; the data window is the image. Every pixel comes out finite and ≥ 0: NaN and
-/// negative values become 0, infinity the largest half (65504). No alpha in the file: 1.
-/// Throws Error: missing, broken, not one of the two, empty, deep data only, more than 2^16 a side or 2^28 pixels.
+/// Reads Radiance (.hdr) or OpenEXR (.exr) by its content: RGB(A), Y, luminance-chroma, one channel (grey) or one
+/// layer's R, G, B; of several parts the first flat one; the data window is the image. Every pixel comes out finite and
+/// ≥ 0: NaN and negative values become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error:
+/// missing, broken, not one of the two, empty, deep data only, more than 2^16 a side or 2^28 pixels.
 Image read_hdr(const std::filesystem::path& path);
 
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
 Image8 read_ldr(const std::filesystem::path& path);
 
-/// Writes a float image; the extension chooses .exr (half float, clamped to ±65504; full float if `full`) or .hdr (no alpha,
-/// negative values and NaN become 0). An EXR has an alpha channel only if some alpha is not 1.
-/// All writers write to a temporary name first and rename, so that no partial file is ever seen. Throws Error if unwritable.
+/// Writes a float image; the extension chooses .exr (half float, clamped to ±65504; full float if `full`) or .hdr (no
+/// alpha, negative values and NaN become 0). An EXR has an alpha channel only if some alpha is not 1. All writers write
+/// to a temporary name first and rename, so that no partial file is ever seen. Throws Error if unwritable.
 void write_hdr(const std::filesystem::path& path, const Image& image, bool full = false);
 
-/// Writes one float channel set to EXR: `names` per channel ("R","G","B", "Z", "id" …), `channels[i]` of width·height values.
-void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height, const std::vector<std::string>& names,
-                        const std::vector<std::vector<float>>& channels);
+/// Writes one float channel set to EXR: `names` per channel ("R","G","B", "Z", "id" …), `channels[i]` of width·height
+/// values.
+void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
+                        const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels);
 
 /// Writes an 8-bit PNG. `alpha` false drops the alpha channel.
 void write_png(const std::filesystem::path& path, const Image8& image, bool alpha = false);
 
-/// Fails early, before long work: throws Error if a file cannot be created at `path` (folder missing, not writable, is a folder).
-/// Leaves nothing behind and does not touch a file that is there.
+/// Fails early, before long work: throws Error if a file cannot be created at `path` (folder missing, not writable, is
+/// a folder). Leaves nothing behind and does not touch a file that is there.
 void check_writable(const std::filesystem::path& path);
 
-/// Calls `write(temporary_path)` and renames the result to `path`; removes it if `write` throws. Throws Error if unwritable.
-void write_atomically(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+/// Calls `write(temporary_path)` and renames the result to `path`; removes it if `write` throws. Throws Error if
+/// unwritable.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace peelray

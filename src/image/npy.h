@@ -21,11 +21,13 @@ struct HitRecord {
 };
 static_assert(sizeof(HitRecord) == 16);
 
-/// Reads float32 (n, 8), C order, little endian, format version 1 to 3. Throws Error naming what the file holds instead:
-/// another dtype, byte order, Fortran order, other shape, truncated or overlong data, not a .npy file. n = 0 is legal.
+/// Reads float32 (n, 8), C order, little endian, format version 1 to 3. Throws Error naming what the file holds
+/// instead: another dtype, byte order, Fortran order, other shape, truncated or overlong data, not a .npy file. n = 0
+/// is legal.
 std::vector<RayRecord> read_rays(const std::filesystem::path& path);
 
-/// Writes a structured array of shape (n,): [('t','<f4'),('triangle','<u4'),('u','<f4'),('v','<f4')]. Atomic. Throws Error.
+/// Writes a structured array of shape (n,): [('t','<f4'),('triangle','<u4'),('u','<f4'),('v','<f4')]. Atomic. Throws
+/// Error.
 void write_hits(const std::filesystem::path& path, const std::vector<HitRecord>& hits);
 
 }  // namespace peelray

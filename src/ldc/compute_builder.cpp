@@ -9,9 +9,17 @@
 namespace peelray {
 namespace {
 
-uint32_t top_count(const CubeGrid& grid) { return (grid.dims.x / 16) * (grid.dims.y / 16) * (grid.dims.z / 16); }
+/// llvmpipe stops a shader's loops after 65,535 iterations, silently: ldc_sort_long needs 73 for 256 samples. Measured:
+/// 150,000 are sorted, 220,000 are not.
+constexpr uint32_t kLongestListOnCpu = 200'000;
 
-uint32_t with_reserve(uint32_t needed) { return uint32_t(std::min<uint64_t>(uint64_t(needed) * 3 / 2 + 64, 0x7fffffffu)); }
+uint32_t top_count(const CubeGrid& grid) {
+    return (grid.dims.x / 16) * (grid.dims.y / 16) * (grid.dims.z / 16);
+}
+
+uint32_t with_reserve(uint32_t needed) {
+    return uint32_t(std::min<uint64_t>(uint64_t(needed) * 3 / 2 + 64, 0x7fffffffu));
+}
 
 /// Grows `capacity` if `needed` exceeds it; tells whether it did.
 bool grow(uint32_t& capacity, uint32_t needed) {
@@ -22,8 +30,7 @@ bool grow(uint32_t& capacity, uint32_t needed) {
 
 }  // namespace
 
-ComputeBuilder::ComputeBuilder(Device& device)
-    : device_(device) {
+ComputeBuilder::ComputeBuilder(Device& device) : device_(device) {
     counters_ = Buffer(device, "build counters", sizeof(LdcCounters));
     groups_ = Buffer(device, "build workgroups", LDC_GROUPS * 12);
     counters_readback_ = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
@@ -88,9 +95,11 @@ LdcParams ComputeBuilder::params(const Cube& cube) const {
 void ComputeBuilder::record_scan(Commands& commands, uint32_t capacity, uint32_t counter) {
     const ScanParams p{capacity, counter};
     const Groups groups = groups_for(capacity, SCAN_BLOCK);
-    commands.run(device_.pass("scan_reduce"), {{"counters", counters_}, {"sums", sums_}, {"block_sums", block_sums_}}, p, groups);
+    commands.run(device_.pass("scan_reduce"), {{"counters", counters_}, {"sums", sums_}, {"block_sums", block_sums_}},
+                 p, groups);
     commands.run(device_.pass("scan_blocks"), {{"block_sums", block_sums_}}, p, {1});
-    commands.run(device_.pass("scan_apply"), {{"counters", counters_}, {"sums", sums_}, {"block_sums", block_sums_}}, p, groups);
+    commands.run(device_.pass("scan_apply"), {{"counters", counters_}, {"sums", sums_}, {"block_sums", block_sums_}}, p,
+                 groups);
 }
 
 void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles, Cube& cube) {
@@ -103,60 +112,106 @@ void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles
     commands.fill(voxel_counts_, 0, 0, uint64_t(capacity_.nodes) * 256);
 
     commands.run(device_.pass("ldc_raster"),
-                 {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_}, {"node_masks", node_masks_},
-                  {"fragments", fragments_}, {"big_triangles", big_triangles_}},
+                 {{"positions", triangles.positions},
+                  {"triangles", triangles.triangles},
+                  {"counters", counters_},
+                  {"node_masks", node_masks_},
+                  {"fragments", fragments_},
+                  {"big_triangles", big_triangles_}},
                  p, groups_for(triangles.count, 64));
     commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
     commands.run_indirect(device_.pass("ldc_tiles"),
-                 {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_},
-                  {"big_triangles", big_triangles_}, {"tiles", tiles_}},
-                 p, groups_, LDC_GROUPS_BIG * 12);
+                          {{"positions", triangles.positions},
+                           {"triangles", triangles.triangles},
+                           {"counters", counters_},
+                           {"big_triangles", big_triangles_},
+                           {"tiles", tiles_}},
+                          p, groups_, LDC_GROUPS_BIG * 12);
     commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
     commands.run_indirect(device_.pass("ldc_raster_tiles"),
-                 {{"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_}, {"node_masks", node_masks_},
-                  {"fragments", fragments_}, {"tiles", tiles_}},
-                 p, groups_, LDC_GROUPS_TILES * 12);
+                          {{"positions", triangles.positions},
+                           {"triangles", triangles.triangles},
+                           {"counters", counters_},
+                           {"node_masks", node_masks_},
+                           {"fragments", fragments_},
+                           {"tiles", tiles_}},
+                          p, groups_, LDC_GROUPS_TILES * 12);
 
     commands.run(device_.pass("ldc_top_counts"), {{"node_masks", node_masks_}, {"sums", sums_}}, p, top_groups);
     record_scan(commands, tops, SCAN_NO_COUNTER);
     commands.run(device_.pass("ldc_tops"),
-                 {{"node_masks", node_masks_}, {"sums", sums_}, {"top_table", cube.top_table}, {"top_cells", top_cells_}, {"counters", counters_}},
+                 {{"node_masks", node_masks_},
+                  {"sums", sums_},
+                  {"top_table", cube.top_table},
+                  {"top_cells", top_cells_},
+                  {"counters", counters_}},
                  p, top_groups);
     commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
     commands.run_indirect(device_.pass("ldc_nodes"),
-                 {{"counters", counters_}, {"node_masks", node_masks_}, {"sums", sums_}, {"top_cells", top_cells_},
-                  {"node_table", cube.node_table}, {"node_cells", node_cells_}},
-                 p, groups_, LDC_GROUPS_TOPS * 12);
+                          {{"counters", counters_},
+                           {"node_masks", node_masks_},
+                           {"sums", sums_},
+                           {"top_cells", top_cells_},
+                           {"node_table", cube.node_table},
+                           {"node_cells", node_cells_}},
+                          p, groups_, LDC_GROUPS_TOPS * 12);
     commands.run_indirect(device_.pass("ldc_count"),
-                 {{"counters", counters_}, {"top_table", cube.top_table}, {"node_table", cube.node_table}, {"fragments", fragments_},
-                  {"voxel_counts", voxel_counts_}},
-                 p, groups_, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(device_.pass("ldc_node_sums"), {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}}, p, groups_, LDC_GROUPS_NODES * 12);
+                          {{"counters", counters_},
+                           {"top_table", cube.top_table},
+                           {"node_table", cube.node_table},
+                           {"fragments", fragments_},
+                           {"voxel_counts", voxel_counts_}},
+                          p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run_indirect(device_.pass("ldc_node_sums"),
+                          {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}}, p, groups_,
+                          LDC_GROUPS_NODES * 12);
     record_scan(commands, capacity_.nodes, offsetof(LdcCounters, nodes) / 4);
     commands.run_indirect(device_.pass("ldc_voxels"),
-                 {{"counters", counters_}, {"voxel_counts", voxel_counts_}, {"sums", sums_}, {"voxel_table", cube.voxel_table},
-                  {"long_lists", long_lists_}},
-                 p, groups_, LDC_GROUPS_NODES * 12);
+                          {{"counters", counters_},
+                           {"voxel_counts", voxel_counts_},
+                           {"sums", sums_},
+                           {"voxel_table", cube.voxel_table},
+                           {"long_lists", long_lists_}},
+                          p, groups_, LDC_GROUPS_NODES * 12);
     commands.run(device_.pass("ldc_groups"), {{"counters", counters_}, {"groups", groups_}}, p, {1});
     commands.run_indirect(device_.pass("ldc_scatter"),
-                 {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"fragments", fragments_}, {"unsorted_ids", unsorted_ids_}}, p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+                          {{"counters", counters_},
+                           {"voxel_table", cube.voxel_table},
+                           {"fragments", fragments_},
+                           {"unsorted_ids", unsorted_ids_}},
+                          p, groups_, LDC_GROUPS_FRAGMENTS * 12);
     commands.run_indirect(device_.pass("ldc_sort"),
-                 {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"fragments", fragments_}, {"unsorted_ids", unsorted_ids_},
-                  {"voxel_counts", voxel_counts_}, {"node_cells", node_cells_}, {"positions", triangles.positions},
-                  {"triangles", triangles.triangles}, {"samples", cube.samples}, {"sample_ids", cube.sample_ids}},
-                 p, groups_, LDC_GROUPS_FRAGMENTS * 12);
+                          {{"counters", counters_},
+                           {"voxel_table", cube.voxel_table},
+                           {"fragments", fragments_},
+                           {"unsorted_ids", unsorted_ids_},
+                           {"voxel_counts", voxel_counts_},
+                           {"node_cells", node_cells_},
+                           {"positions", triangles.positions},
+                           {"triangles", triangles.triangles},
+                           {"samples", cube.samples},
+                           {"sample_ids", cube.sample_ids}},
+                          p, groups_, LDC_GROUPS_FRAGMENTS * 12);
     commands.run_indirect(device_.pass("ldc_sort_long"),
-                 {{"counters", counters_}, {"voxel_table", cube.voxel_table}, {"voxel_counts", voxel_counts_}, {"long_lists", long_lists_},
-                  {"node_cells", node_cells_}, {"positions", triangles.positions}, {"triangles", triangles.triangles},
-                  {"unsorted_ids", unsorted_ids_}, {"sample_ids", cube.sample_ids}, {"samples", cube.samples}},
-                 p, groups_, LDC_GROUPS_LONG * 12);
+                          {{"counters", counters_},
+                           {"voxel_table", cube.voxel_table},
+                           {"voxel_counts", voxel_counts_},
+                           {"long_lists", long_lists_},
+                           {"node_cells", node_cells_},
+                           {"positions", triangles.positions},
+                           {"triangles", triangles.triangles},
+                           {"unsorted_ids", unsorted_ids_},
+                           {"sample_ids", cube.sample_ids},
+                           {"samples", cube.samples}},
+                          p, groups_, LDC_GROUPS_LONG * 12);
 
     const glm::uvec3 t = cube.grid.dims / 16u;
     for (p.axis = 0; p.axis < 3; p.axis++)
-        commands.run(device_.pass("ldc_sat_scan"), {{"node_masks", node_masks_}, {"occupancy_sums", occupancy_sums_}}, p,
-                     groups_for(uint64_t(t[(p.axis + 1) % 3]) * t[(p.axis + 2) % 3], 64));
+        commands.run(device_.pass("ldc_sat_scan"), {{"node_masks", node_masks_}, {"occupancy_sums", occupancy_sums_}},
+                     p, groups_for(uint64_t(t[(p.axis + 1) % 3]) * t[(p.axis + 2) % 3], 64));
     commands.run(device_.pass("ldc_top_boxes"),
-                 {{"node_masks", node_masks_}, {"occupancy_sums", occupancy_sums_}, {"top_table", cube.top_table}}, p, groups_for(tops, 64));
+                 {{"node_masks", node_masks_}, {"occupancy_sums", occupancy_sums_}, {"top_table", cube.top_table}}, p,
+                 groups_for(tops, 64));
     commands.copy(counters_, counters_readback_, sizeof(LdcCounters));
     commands.end_group();
 }
@@ -164,20 +219,27 @@ void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles
 bool ComputeBuilder::finish(Cube& cube) {
     std::memcpy(&cube.counts, counters_readback_.mapped(), sizeof cube.counts);
     const LdcCounters& counts = cube.counts;
-    // A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three stages.
+    // A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three
+    // stages.
     bool grown = grow(capacity_.big, counts.big);
     grown |= grow(capacity_.tiles, counts.tiles);
     grown |= grow(capacity_.fragments, counts.fragments);
     grown |= grow(capacity_.tops, counts.tops);
     grown |= grow(capacity_.nodes, counts.nodes);
     grown |= grow(capacity_.long_lists, counts.long_lists);
+    if (!grown && counts.longest > kLongestListOnCpu && device_.info().kind == "CPU")
+        fail(
+            "{} triangles crowd into one voxel, more than the software device '{}' can sort ({}): use a larger --ldc, "
+            "or a GPU",
+            counts.longest, device_.info().name, kLongestListOnCpu);
     if (!grown) return true;
     redone_++;
     allocate(cube);
     return false;
 }
 
-void ComputeBuilder::build(Commands& commands, const TriangleBuffers& triangles, Cube& cube, uint32_t resolution, Sampling sampling) {
+void ComputeBuilder::build(Commands& commands, const TriangleBuffers& triangles, Cube& cube, uint32_t resolution,
+                           Sampling sampling) {
     prepare(cube, triangles, resolution, sampling);
     do {
         record(commands, triangles, cube);
@@ -187,8 +249,9 @@ void ComputeBuilder::build(Commands& commands, const TriangleBuffers& triangles,
 
 uint64_t ComputeBuilder::scratch_bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&counters_, &groups_, &node_masks_, &fragments_, &big_triangles_, &tiles_, &sums_, &block_sums_, &top_cells_, &node_cells_,
-                                 &voxel_counts_, &long_lists_, &unsorted_ids_, &occupancy_sums_})
+    for (const Buffer* buffer :
+         {&counters_, &groups_, &node_masks_, &fragments_, &big_triangles_, &tiles_, &sums_, &block_sums_, &top_cells_,
+          &node_cells_, &voxel_counts_, &long_lists_, &unsorted_ids_, &occupancy_sums_})
         bytes += buffer->bytes();
     return bytes;
 }

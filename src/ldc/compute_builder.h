@@ -16,17 +16,20 @@ class ComputeBuilder {
   public:
     explicit ComputeBuilder(Device& device);
 
-    /// Sets the cube's grid and sampling and makes room: a guess from the triangles' count at first, 1.5 times the last need later.
+    /// Sets the cube's grid and sampling and makes room: a guess from the triangles' count at first, 1.5 times the last
+    /// need later.
     void prepare(Cube& cube, const TriangleBuffers& triangles, uint32_t resolution, Sampling sampling);
 
     /// Records all passes of one build into the group "build".
     void record(Commands& commands, const TriangleBuffers& triangles, Cube& cube);
 
-    /// After the submission: true if everything fitted. Otherwise the buffers have grown and the frame must be recorded again.
+    /// After the submission: true if everything fitted. Otherwise the buffers have grown and the frame must be recorded
+    /// again. Throws Error where a software device cannot sort what crowds into one voxel.
     bool finish(Cube& cube);
 
     /// prepare, record, submit and finish until it fits.
-    void build(Commands& commands, const TriangleBuffers& triangles, Cube& cube, uint32_t resolution, Sampling sampling);
+    void build(Commands& commands, const TriangleBuffers& triangles, Cube& cube, uint32_t resolution,
+               Sampling sampling);
 
     /// Bytes of scratch memory held beside the cube.
     uint64_t scratch_bytes() const;

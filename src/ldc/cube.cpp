@@ -8,11 +8,12 @@
 
 namespace peelray {
 
-TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> indices,
-                                 const glm::vec3& lower, const glm::vec3& upper)
+TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vertices,
+                                 std::span<const glm::uvec3> indices, const glm::vec3& lower, const glm::vec3& upper)
     : count(uint32_t(indices.size())), lower(lower), upper(upper) {
     // Two bits of a sample's id hold its axis.
-    if (indices.size() >= 1u << 30) fail("the scene has {} triangles, but a cube holds fewer than 2^30: split the scene", indices.size());
+    if (indices.size() >= 1u << 30)
+        fail("the scene has {} triangles, but a cube holds fewer than 2^30: split the scene", indices.size());
     positions = Buffer(device, "vertex positions", vertices.size_bytes());
     triangles = Buffer(device, "triangle indices", indices.size_bytes());
     Commands commands(device);

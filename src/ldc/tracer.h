@@ -12,12 +12,14 @@ enum class HitTest : uint8_t { exact, planar };
 
 /// A queue of rays on the device.
 struct RayQueue {
-    const Buffer& rays;   ///< Ray each
+    const Buffer& rays;            ///< Ray each
     const Buffer* skip = nullptr;  ///< a triangle per ray that does not count; null: none
-    uint32_t count;       ///< rays; with `counter`: room in the queue
-    const Buffer* counters = nullptr;  ///< null: `count` rays; else the number is uint32 number `counter` of this buffer
+    uint32_t count;                ///< rays; with `counter`: room in the queue
+    const Buffer* counters =
+        nullptr;  ///< null: `count` rays; else the number is uint32 number `counter` of this buffer
     uint32_t counter = 0;
-    const Buffer* groups = nullptr;  ///< null: dispatched for `count`; else workgroups of 64 rays are read at groups_offset
+    const Buffer* groups =
+        nullptr;  ///< null: dispatched for `count`; else workgroups of 64 rays are read at groups_offset
     uint64_t groups_offset = 0;
 };
 
@@ -27,12 +29,14 @@ enum class Edges : uint8_t {
     precise,  ///< in doubled precision: as a double-precision ray tracer sees them
 };
 
-/// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the nearest.
-/// The cube must have been sampled for `test` (conservative: exact, centre: planar); asserted.
-void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles, const RayQueue& queue,
-                  const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
+/// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the
+/// nearest. The cube must have been sampled for `test` (conservative: exact, centre: planar); asserted.
+void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles,
+                  const RayQueue& queue, const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
 
 /// The sampling that a hit test needs.
-inline Sampling sampling_for(HitTest test) { return test == HitTest::exact ? Sampling::conservative : Sampling::centre; }
+inline Sampling sampling_for(HitTest test) {
+    return test == HitTest::exact ? Sampling::conservative : Sampling::centre;
+}
 
 }  // namespace peelray

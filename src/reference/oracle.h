@@ -19,16 +19,16 @@ struct OracleRay {
 };
 
 struct OracleHit {
-    double t;             ///< +inf: a miss
-    uint32_t triangle;    ///< ~0u: a miss
-    double u, v;          ///< barycentric weights of the second and third vertex
+    double t;           ///< +inf: a miss
+    uint32_t triangle;  ///< ~0u: a miss
+    double u, v;        ///< barycentric weights of the second and third vertex
     bool hit() const { return triangle != ~0u; }
 };
 
 /// What a checked answer turned out to be.
 enum class Verdict {
-    same,          ///< the double-precision answer for the ray itself
-    within_offset, ///< the answer of a ray within the allowed parallel offset
+    same,           ///< the double-precision answer for the ray itself
+    within_offset,  ///< the answer of a ray within the allowed parallel offset
     wrong,
 };
 
@@ -44,8 +44,9 @@ class Oracle {
     /// `skip`: a triangle that does not count (~0u: none).
     OracleHit closest(const OracleRay& ray, uint32_t skip = ~0u) const;
 
-    /// Is `t` (+inf: a miss), `triangle` a right answer for `ray`? See DESIGN.md section 9.3: right when the ray itself, or one
-    /// within 2·10⁻⁶ of the scene's diagonal (parallel offset), has a nearest hit whose distance across the surface
+    /// Is `t` (+inf: a miss), `triangle` a right answer for `ray`? See DESIGN.md section 9.3: right when the ray
+    /// itself, or one within 2·10⁻⁶ of the scene's diagonal (parallel offset), has a nearest hit whose distance across
+    /// the surface
     /// (|Δt|·|d|·cosine to the normal) is ≤ 10⁻⁵ of the diagonal; misses must agree likewise.
     Verdict check(const OracleRay& ray, double t, uint32_t triangle) const;
 
@@ -59,7 +60,8 @@ class Oracle {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The same answer as Oracle::closest() from a loop over all triangles, without Embree: what tests compare the oracle with.
+/// The same answer as Oracle::closest() from a loop over all triangles, without Embree: what tests compare the oracle
+/// with.
 OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip = ~0u);
 
 }  // namespace peelray

@@ -57,8 +57,8 @@ class Neighbourhood {
                std::any_of(fine.begin(), fine.end(), holds);
     }
 
-    /// Is there one among the offset rays that are aimed at the surface where the ray is at `t`? Rays that meet a triangle
-    /// almost edge-on hit it through a window far narrower than the allowed offset: only aiming finds it.
+    /// Is there one among the offset rays that are aimed at the surface where the ray is at `t`? Rays that meet a
+    /// triangle almost edge-on hit it through a window far narrower than the allowed offset: only aiming finds it.
     template <typename Right>
     bool any_aimed(double t, const Right& right) const {
         const glm::dvec3 point = ray_.origin + t * ray_.direction;
@@ -86,7 +86,8 @@ class Neighbourhood {
             const glm::dvec3 a = p[i], edge = p[(i + 1) % 3] - a;
             inside = inside && glm::dot(glm::cross(edge, q - a), normal) >= 0;
             const double squared = glm::dot(edge, edge);
-            const glm::dvec3 on_edge = a + edge * (squared > 0 ? std::clamp(glm::dot(q - a, edge) / squared, 0.0, 1.0) : 0.0);
+            const glm::dvec3 on_edge =
+                a + edge * (squared > 0 ? std::clamp(glm::dot(q - a, edge) / squared, 0.0, 1.0) : 0.0);
             if (const double d = glm::length(q - on_edge); d < distance) {
                 distance = d;
                 best = on_edge;

@@ -9,8 +9,11 @@ namespace peelray {
 
 void describe_camera(Frame& frame, const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {
     const glm::dvec3 eye = camera.eye, view = glm::dvec3(camera.look) - eye;
-    const auto finite = [](const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-    if (!finite(eye) || !finite(view) || !finite(glm::dvec3(camera.up))) fail("the camera's position is not finite: check --eye, --look and --up");
+    const auto finite = [](const glm::dvec3& v) {
+        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    };
+    if (!finite(eye) || !finite(view) || !finite(glm::dvec3(camera.up)))
+        fail("the camera's position is not finite: check --eye, --look and --up");
     if (glm::length(view) == 0) fail("the camera looks at itself: --eye and --look must differ");
     const glm::dvec3 forward = glm::normalize(view);
     const glm::dvec3 side = glm::cross(forward, glm::dvec3(camera.up));
@@ -22,7 +25,8 @@ void describe_camera(Frame& frame, const Camera& camera, float aspect, const glm
     frame.orthographic = camera.orthographic_height > 0;
     if (!frame.orthographic) {
         if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415f))
-            fail("a vertical field of view of {:.1f} degrees is impossible: choose one between 0 and 180 (--fov)", camera.vertical_fov * 57.29578f);
+            fail("a vertical field of view of {:.1f} degrees is impossible: choose one between 0 and 180 (--fov)",
+                 camera.vertical_fov * 57.29578f);
         half_height = std::tan(double(camera.vertical_fov) / 2);
     }
     frame.eye = camera.eye;

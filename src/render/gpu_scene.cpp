@@ -27,7 +27,8 @@ GpuMaterial gpu_material(const Material& material) {
     m.alpha = material.alpha;
     // Beer and Lambert: white becomes attenuation_color after attenuation_distance (KHR_materials_volume).
     if (std::isfinite(material.attenuation_distance) && material.attenuation_distance > 0)
-        m.absorption = -glm::log(glm::max(material.attenuation_color, glm::vec3(1e-6f))) / material.attenuation_distance;
+        m.absorption =
+            -glm::log(glm::max(material.attenuation_color, glm::vec3(1e-6f))) / material.attenuation_distance;
     return m;
 }
 
@@ -96,8 +97,8 @@ void GpuScene::upload_lights(Device& device, Commands& commands, const Scene& sc
 
 uint64_t GpuScene::bytes() const {
     uint64_t sum = 0;
-    for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors, &triangle_materials, &materials,
-                                 &texture_infos, &texels, &lights, &environment})
+    for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors,
+                                 &triangle_materials, &materials, &texture_infos, &texels, &lights, &environment})
         sum += buffer->bytes();
     return sum;
 }

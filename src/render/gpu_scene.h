@@ -18,7 +18,7 @@ class GpuScene {
     Buffer normals, uvs, colors, triangle_materials;
     Buffer materials, texture_infos, texels;
     Buffer lights, environment;
-    bool has_glass = false;   ///< some triangle lets light through
+    bool has_glass = false;  ///< some triangle lets light through
     bool has_colors = false;
     uint32_t light_count = 0;
 

@@ -27,7 +27,8 @@ void PathQueues::prepare(uint32_t pixels, uint32_t levels, bool branching) {
     // One level more than is traced: the deepest level's shader binds a next level that it never writes.
     levels_.resize(std::max<size_t>(levels_.size(), levels + 1));
     allocate(levels_[0], 0, pixels);
-    for (uint32_t i = 1; i < levels; i++) allocate(levels_[i], i, std::max(1024u, branching || i == 1 ? pixels / 4 * 3 : pixels / 4));
+    for (uint32_t i = 1; i < levels; i++)
+        allocate(levels_[i], i, std::max(1024u, branching || i == 1 ? pixels / 4 * 3 : pixels / 4));
     allocate(levels_[levels], levels, 64);
 }
 
@@ -44,7 +45,8 @@ bool PathQueues::finish() {
 uint64_t PathQueues::bytes() const {
     uint64_t sum = 0;
     for (const PathLevel& level : levels_)
-        sum += level.rays.bytes() + level.states.bytes() + level.skip.bytes() + level.hits.bytes() + level.nodes.bytes();
+        sum +=
+            level.rays.bytes() + level.states.bytes() + level.skip.bytes() + level.hits.bytes() + level.nodes.bytes();
     return sum;
 }
 

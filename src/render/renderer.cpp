@@ -76,8 +76,13 @@ struct Renderer::Impl {
     double frame_ms = 0;
 
     Impl(Device& device, const Scene& source, const Geometry& geometry, const Environment& environment)
-        : device(device), scene(device, source, geometry, environment), lower(geometry.lower), upper(geometry.upper), builder(device),
-          queues(device), commands(device) {
+        : device(device),
+          scene(device, source, geometry, environment),
+          lower(geometry.lower),
+          upper(geometry.upper),
+          builder(device),
+          queues(device),
+          commands(device) {
         frame_buffer = Buffer(device, "frame constants", sizeof(Frame));
     }
 
@@ -100,13 +105,17 @@ struct Renderer::Impl {
 void Renderer::Impl::check_settings() const {
     const uint32_t largest = std::min(device.limits().maxImageDimension2D, device.limits().maxFramebufferWidth);
     if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest)
-        fail("a picture of {}x{} pixels is impossible: the device '{}' draws 1x1 to {}x{} (--size)", settings.width, settings.height,
-             device.info().name, largest, largest);
+        fail("a picture of {}x{} pixels is impossible: the device '{}' draws 1x1 to {}x{} (--size)", settings.width,
+             settings.height, device.info().name, largest, largest);
     const uint64_t bytes = uint64_t(settings.width) * settings.height * sizeof(glm::vec4);
     if (bytes > device.limits().maxStorageBufferRange)
-        fail("a picture of {}x{} pixels needs {:.0f} MiB at once, but the device '{}' binds at most {:.0f}: choose a smaller --size", settings.width,
-             settings.height, double(bytes) / (1 << 20), device.info().name, double(device.limits().maxStorageBufferRange) / (1 << 20));
-    if (settings.bounces >= QUEUE_LEVELS) fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
+        fail(
+            "a picture of {}x{} pixels needs {:.0f} MiB at once, but the device '{}' binds at most {:.0f}: choose a "
+            "smaller --size",
+            settings.width, settings.height, double(bytes) / (1 << 20), device.info().name,
+            double(device.limits().maxStorageBufferRange) / (1 << 20));
+    if (settings.bounces >= QUEUE_LEVELS)
+        fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
     if (settings.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
 }
 
@@ -115,8 +124,9 @@ void Renderer::Impl::prepare_images() {
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     visibility_image.reset();
     depth_image.reset();
-    visibility_image = Image2D(device, "visibility", settings.width, settings.height, VK_FORMAT_R32_UINT,
-                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    visibility_image =
+        Image2D(device, "visibility", settings.width, settings.height, VK_FORMAT_R32_UINT,
+                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     depth_image = Image2D(device, "depth", settings.width, settings.height, VK_FORMAT_D32_SFLOAT,
                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
     ensure_size(device, visibility, "visible triangles", pixels * 4);
@@ -129,7 +139,8 @@ void Renderer::Impl::prepare_images() {
 void Renderer::Impl::prepare_frame() {
     last_level = settings.trace ? settings.bounces : 0;
     const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
-    // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to grow.
+    // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to
+    // grow.
     const uint64_t most = std::min<uint64_t>(4u << 20, device.limits().maxStorageBufferRange / (2 * sizeof(PathNode)));
     const uint32_t rows = (settings.height + 7) / 8 * 8;
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
@@ -144,8 +155,9 @@ void Renderer::Impl::prepare_frame() {
     scene.describe(frame);
     frame.effects = 0;
     if (settings.trace)
-        frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) | (settings.refraction ? EFFECT_REFRACTION : 0u) |
-                        (settings.shadow ? EFFECT_SHADOW : 0u) | (settings.ambient ? EFFECT_AMBIENT : 0u);
+        frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) |
+                        (settings.refraction ? EFFECT_REFRACTION : 0u) | (settings.shadow ? EFFECT_SHADOW : 0u) |
+                        (settings.ambient ? EFFECT_AMBIENT : 0u);
     frame.planar = hit == HitTest::planar;
     // Planar hits know a surface to about a voxel: a ray starts beyond its own surface's samples (DESIGN.md section 3).
     frame.surface_offset = settings.trace && hit == HitTest::planar ? 1.5f * cube.grid.voxel : 0;
@@ -169,9 +181,10 @@ void Renderer::Impl::build_cube() {
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    commands.draw(device.raster_pass("visibility"),
-                  {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
-                  VisibilityParams{jitter_of(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
+    commands.draw(
+        device.raster_pass("visibility"),
+        {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
+        VisibilityParams{jitter_of(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -191,20 +204,39 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
 void Renderer::Impl::record_primary(const LevelParams& p) {
     const PathLevel& level = queues.level(0);
     commands.run(device.pass("primary"),
-                 {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles},
-                  {"visibility", visibility}, {"rays", level.rays}, {"states", level.states}, {"hits", level.hits}, {"queue", queues.counters()}},
+                 {{"frame", frame_buffer},
+                  {"positions", scene.triangles.positions},
+                  {"triangles", scene.triangles.triangles},
+                  {"visibility", visibility},
+                  {"rays", level.rays},
+                  {"states", level.states},
+                  {"hits", level.hits},
+                  {"queue", queues.counters()}},
                  p, groups_for(p.capacity, 64));
 }
 
 void Renderer::Impl::record_scatter(const LevelParams& p) {
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
     commands.run_indirect(device.pass("scatter"),
-                          {{"frame", frame_buffer}, {"materials", scene.materials}, {"texture_infos", scene.texture_infos},
-                           {"texels", scene.texels}, {"normals", scene.normals}, {"uvs", scene.uvs}, {"colors", scene.colors},
-                           {"triangle_materials", scene.triangle_materials}, {"environment", scene.environment},
-                           {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}, {"rays", level.rays},
-                           {"states", level.states}, {"hits", level.hits}, {"nodes", level.nodes}, {"queue", queues.counters()},
-                           {"next_rays", next.rays}, {"next_states", next.states}, {"next_skip", next.skip}},
+                          {{"frame", frame_buffer},
+                           {"materials", scene.materials},
+                           {"texture_infos", scene.texture_infos},
+                           {"texels", scene.texels},
+                           {"normals", scene.normals},
+                           {"uvs", scene.uvs},
+                           {"colors", scene.colors},
+                           {"triangle_materials", scene.triangle_materials},
+                           {"environment", scene.environment},
+                           {"positions", scene.triangles.positions},
+                           {"triangles", scene.triangles.triangles},
+                           {"rays", level.rays},
+                           {"states", level.states},
+                           {"hits", level.hits},
+                           {"nodes", level.nodes},
+                           {"queue", queues.counters()},
+                           {"next_rays", next.rays},
+                           {"next_states", next.states},
+                           {"next_skip", next.skip}},
                           p, queues.groups(), p.level * 12);
 }
 
@@ -214,14 +246,27 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     // Without a cube its bindings still need buffers; the shader does not read them then.
     const auto cube_buffer = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
     commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
-                          {{"top_table", cube_buffer(cube.top_table)}, {"node_table", cube_buffer(cube.node_table)},
-                           {"voxel_table", cube_buffer(cube.voxel_table)}, {"samples", cube_buffer(cube.samples)},
-                           {"sample_ids", cube_buffer(cube.sample_ids)}, {"positions", scene.triangles.positions},
-                           {"triangles", scene.triangles.triangles}, {"frame", frame_buffer}, {"materials", scene.materials},
-                           {"texture_infos", scene.texture_infos}, {"texels", scene.texels}, {"normals", scene.normals}, {"uvs", scene.uvs},
-                           {"colors", scene.colors}, {"triangle_materials", scene.triangle_materials},
-                           {"rays", level.rays}, {"states", level.states}, {"hits", level.hits}, {"nodes", level.nodes},
-                           {"queue", queues.counters()}, {"lights", scene.lights}},
+                          {{"top_table", cube_buffer(cube.top_table)},
+                           {"node_table", cube_buffer(cube.node_table)},
+                           {"voxel_table", cube_buffer(cube.voxel_table)},
+                           {"samples", cube_buffer(cube.samples)},
+                           {"sample_ids", cube_buffer(cube.sample_ids)},
+                           {"positions", scene.triangles.positions},
+                           {"triangles", scene.triangles.triangles},
+                           {"frame", frame_buffer},
+                           {"materials", scene.materials},
+                           {"texture_infos", scene.texture_infos},
+                           {"texels", scene.texels},
+                           {"normals", scene.normals},
+                           {"uvs", scene.uvs},
+                           {"colors", scene.colors},
+                           {"triangle_materials", scene.triangle_materials},
+                           {"rays", level.rays},
+                           {"states", level.states},
+                           {"hits", level.hits},
+                           {"nodes", level.nodes},
+                           {"queue", queues.counters()},
+                           {"lights", scene.lights}},
                           p, queues.groups(), p.level * 12);
 }
 
@@ -234,17 +279,22 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
         commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
         if (i > 0)
             record_trace(commands, device, cube, scene.triangles,
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull}, level.hits, hit, false, Edges::single);
+                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
+                         level.hits, hit, false, Edges::single);
         record_scatter(p);
         record_shadow(p);
     }
     for (uint32_t i = last_level; i-- > 0;)
-        commands.run_indirect(device.pass("gather"),
-                              {{"nodes", queues.level(i).nodes}, {"next_nodes", queues.level(i + 1).nodes}, {"queue", queues.counters()}},
-                              level_params(i, sample, first_row), queues.groups(), i * 12);
+        commands.run_indirect(
+            device.pass("gather"),
+            {{"nodes", queues.level(i).nodes}, {"next_nodes", queues.level(i + 1).nodes}, {"queue", queues.counters()}},
+            level_params(i, sample, first_row), queues.groups(), i * 12);
     const LevelParams p = level_params(0, sample, first_row);
     commands.run(device.pass("accumulate"),
-                 {{"frame", frame_buffer}, {"nodes", queues.level(0).nodes}, {"hits", queues.level(0).hits}, {"queue", queues.counters()},
+                 {{"frame", frame_buffer},
+                  {"nodes", queues.level(0).nodes},
+                  {"hits", queues.level(0).hits},
+                  {"queue", queues.counters()},
                   {"picture", picture}},
                  p, groups_for(p.capacity, 64));
     commands.copy(queues.counters(), queues.readback(), QUEUE_COUNTERS * 4);
@@ -282,18 +332,29 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
 void Renderer::Impl::render_aovs(Aovs& aovs) {
     const size_t pixels = size_t(settings.width) * settings.height;
     if (pixels * 64 > device.limits().maxStorageBufferRange)
-        fail("auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a smaller --size", settings.width,
-             settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
+        fail(
+            "auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a "
+            "smaller --size",
+            settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
     record_visibility(0);
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
         record_primary(p);
         commands.run(device.pass("aov"),
-                     {{"frame", frame_buffer}, {"materials", scene.materials}, {"texture_infos", scene.texture_infos}, {"texels", scene.texels},
-                      {"normals", scene.normals}, {"uvs", scene.uvs}, {"colors", scene.colors}, {"triangle_materials", scene.triangle_materials},
-                      {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}, {"rays", queues.level(0).rays},
-                      {"hits", queues.level(0).hits}, {"aovs", aov_buffer}},
+                     {{"frame", frame_buffer},
+                      {"materials", scene.materials},
+                      {"texture_infos", scene.texture_infos},
+                      {"texels", scene.texels},
+                      {"normals", scene.normals},
+                      {"uvs", scene.uvs},
+                      {"colors", scene.colors},
+                      {"triangle_materials", scene.triangle_materials},
+                      {"positions", scene.triangles.positions},
+                      {"triangles", scene.triangles.triangles},
+                      {"rays", queues.level(0).rays},
+                      {"hits", queues.level(0).hits},
+                      {"aovs", aov_buffer}},
                      p, groups_for(p.capacity, 64));
     }
     commands.submit();

@@ -22,7 +22,8 @@ void add_levels(Environment& environment) {
             for (uint32_t x = 0; x < w; x++) {
                 glm::vec4 sum(0);
                 for (uint32_t i = 0; i < 4; i++) {
-                    const uint32_t sx = std::min(2 * x + (i & 1), width - 1), sy = std::min(2 * y + (i >> 1), height - 1);
+                    const uint32_t sx = std::min(2 * x + (i & 1), width - 1),
+                                   sy = std::min(2 * y + (i >> 1), height - 1);
                     sum += environment.texels[offset + size_t(sy) * width + sx];
                 }
                 environment.texels[next + size_t(y) * w + x] = sum * 0.25f;
@@ -34,23 +35,28 @@ void add_levels(Environment& environment) {
     }
 }
 
-/// Projects the finest level onto nine harmonics and convolves with the cosine; `radiance(i)` may differ from the texels.
+/// Projects the finest level onto nine harmonics and convolves with the cosine; `radiance(i)` may differ from the
+/// texels.
 template <typename Radiance>
 void project_irradiance(Environment& environment, Radiance radiance) {
     std::array<glm::dvec3, 9> sums{};
     for (uint32_t y = 0; y < environment.height; y++) {
         const float v = (y + 0.5f) / environment.height;
-        const double solid_angle = 2 * kPi / environment.width * (std::cos(kPi * y / environment.height) - std::cos(kPi * (y + 1) / environment.height));
+        const double solid_angle =
+            2 * kPi / environment.width *
+            (std::cos(kPi * y / environment.height) - std::cos(kPi * (y + 1) / environment.height));
         for (uint32_t x = 0; x < environment.width; x++) {
             const glm::dvec3 d = environment_direction((x + 0.5f) / environment.width, v);
             const glm::dvec3 light = glm::dvec3(radiance(size_t(y) * environment.width + x)) * solid_angle;
-            const double basis[9] = {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
+            const double basis[9] = {
+                1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
             for (int i = 0; i < 9; i++) sums[i] += light * basis[i];
         }
     }
     // Squares of the harmonics' constants times the cosine's band factors (pi, 2 pi/3, pi/4).
     const double c0 = 0.282094792 * 0.282094792 * kPi, c1 = 0.488602512 * 0.488602512 * 2 * kPi / 3;
-    const double c2 = 1.092548431 * 1.092548431 * kPi / 4, c20 = 0.315391565 * 0.315391565 * kPi / 4, c22 = 0.546274215 * 0.546274215 * kPi / 4;
+    const double c2 = 1.092548431 * 1.092548431 * kPi / 4, c20 = 0.315391565 * 0.315391565 * kPi / 4,
+                 c22 = 0.546274215 * 0.546274215 * kPi / 4;
     const double factors[9] = {c0, c1, c1, c1, c2, c2, c20, c2, c22};
     for (int i = 0; i < 9; i++) environment.irradiance[i] = glm::vec3(sums[i] * factors[i]);
 }
@@ -71,7 +77,9 @@ glm::vec3 environment_direction(float u, float v) {
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
-glm::vec3 default_sun_direction() { return glm::normalize(glm::vec3(0.55f, 0.75f, 0.45f)); }
+glm::vec3 default_sun_direction() {
+    return glm::normalize(glm::vec3(0.55f, 0.75f, 0.45f));
+}
 
 Environment sky_environment(const glm::vec3& sun_direction) {
     Environment sky;
@@ -79,7 +87,7 @@ Environment sky_environment(const glm::vec3& sun_direction) {
     sky.height = 512;
     sky.texels.resize(size_t(sky.width) * sky.height);
     const glm::vec3 zenith(0.14f, 0.30f, 0.68f), horizon(0.80f, 0.86f, 0.94f), haze(0.60f, 0.64f, 0.68f),
-                    ground(0.24f, 0.25f, 0.26f), glow(1.0f, 0.85f, 0.62f);
+        ground(0.24f, 0.25f, 0.26f), glow(1.0f, 0.85f, 0.62f);
     for (uint32_t y = 0; y < sky.height; y++)
         for (uint32_t x = 0; x < sky.width; x++) {
             const glm::vec3 d = environment_direction((x + 0.5f) / sky.width, (y + 0.5f) / sky.height);
@@ -95,7 +103,8 @@ Environment sky_environment(const glm::vec3& sun_direction) {
     project_irradiance(sky, [&](size_t i) { return glm::vec3(sky.texels[i]); });
     add_levels(sky);
     const glm::vec3 irradiance = 3.6f * glm::vec3(1.0f, 0.93f, 0.82f);
-    const float radius = 0.6f * kPi / 180;  // about twice the real sun: its mirror image stays visible at one sample per pixel
+    const float radius =
+        0.6f * kPi / 180;  // about twice the real sun: its mirror image stays visible at one sample per pixel
     sky.sun_direction = sun_direction;
     sky.sun_cosine = std::cos(radius);
     sky.sun_radiance = irradiance / (kPi * radius * radius);
@@ -118,7 +127,9 @@ Environment image_environment(uint32_t width, uint32_t height, std::span<const g
     environment.width = width;
     environment.height = height;
     environment.texels.assign(pixels.begin(), pixels.end());
-    const auto brightness = [&](size_t i) { return pixels[i].x * 0.2126f + pixels[i].y * 0.7152f + pixels[i].z * 0.0722f; };
+    const auto brightness = [&](size_t i) {
+        return pixels[i].x * 0.2126f + pixels[i].y * 0.7152f + pixels[i].z * 0.0722f;
+    };
 
     double mean = 0, area = 0;
     size_t brightest = 0;
@@ -132,7 +143,9 @@ Environment image_environment(uint32_t width, uint32_t height, std::span<const g
         if (brightness(i) > brightness(brightest)) brightest = i;
     }
     mean /= area;
-    const auto direction = [&](size_t i) { return environment_direction((i % width + 0.5f) / width, (i / width + 0.5f) / height); };
+    const auto direction = [&](size_t i) {
+        return environment_direction((i % width + 0.5f) / width, (i / width + 0.5f) / height);
+    };
     // A spot counts as a sun when it is 40 times brighter than the mean: windows and bright clouds are not.
     const float threshold = float(mean) * 40;
     std::vector<bool> taken(pixels.size(), false);

@@ -10,17 +10,19 @@
 
 namespace peelray {
 
-/// An environment map in equirectangular form with what shading needs of it. The image's centre looks along -z, its right
-/// edge continues at its left; the top row is +y.
+/// An environment map in equirectangular form with what shading needs of it. The image's centre looks along -z, its
+/// right edge continues at its left; the top row is +y.
 struct Environment {
     uint32_t width = 0, height = 0, levels = 0;
-    std::vector<glm::vec4> texels;  ///< all levels, finest first, each half the size (rounded down, at least 1) of the one before
-    std::array<glm::vec3, 9> irradiance{};  ///< E(n) as factors of 1, y, z, x, xy, yz, 3z²-1, xz, x²-y² (Ramamoorthi, Hanrahan 2001)
+    std::vector<glm::vec4>
+        texels;  ///< all levels, finest first, each half the size (rounded down, at least 1) of the one before
+    std::array<glm::vec3, 9>
+        irradiance{};  ///< E(n) as factors of 1, y, z, x, xy, yz, 3z²-1, xz, x²-y² (Ramamoorthi, Hanrahan 2001)
     glm::vec3 sun_direction{0, 1, 0};  ///< unit, to the sun
     glm::vec3 sun_radiance{0};         ///< of its disc, which the texels do not hold
     float sun_cosine = 2;              ///< cosine of the disc's angular radius; 2: no disc
-    float rough_limit = 1e30f;         ///< radiance above this belongs to `lights`: rays after a rough surface see no more
-    std::vector<Light> lights;         ///< directional lights that stand for the sun or the image's brightest spot
+    float rough_limit = 1e30f;  ///< radiance above this belongs to `lights`: rays after a rough surface see no more
+    std::vector<Light> lights;  ///< directional lights that stand for the sun or the image's brightest spot
 };
 
 /// A clear sky over grey ground with the sun at `sun_direction` (unit, to the sun). Made for pleasant pictures, not for
@@ -33,8 +35,8 @@ glm::vec3 default_sun_direction();
 /// The same radiance from everywhere.
 Environment color_environment(const glm::vec3& radiance);
 
-/// An equirectangular image (row 0 at the top). If a spot of it outshines everything else (a sun), a directional light takes
-/// its place in the diffuse light, so that it casts shadows; reflections still see the image as it is.
+/// An equirectangular image (row 0 at the top). If a spot of it outshines everything else (a sun), a directional light
+/// takes its place in the diffuse light, so that it casts shadows; reflections still see the image as it is.
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels);
 
 /// Unit direction of an equirectangular position (u, v in [0, 1]).

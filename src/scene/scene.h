@@ -13,7 +13,8 @@
 
 namespace peelray {
 
-/// An image of 8-bit RGBA texels, row 0 first (the glTF order: v = 0 is the first row). Colour is sRGB-encoded, alpha linear.
+/// An image of 8-bit RGBA texels, row 0 first (the glTF order: v = 0 is the first row). Colour is sRGB-encoded, alpha
+/// linear.
 struct Texture {
     enum class Wrap : uint8_t { repeat, mirror, clamp };
     std::string name;
@@ -26,26 +27,26 @@ struct Texture {
 /// glTF 2.0 metallic-roughness with transmission, ior, volume and emissive_strength; textures modulate factors.
 struct Material {
     std::string name;
-    glm::vec3 base_color{1};       ///< linear, [0, 1]
-    float alpha = 1;               ///< base colour alpha, [0, 1]
-    int base_color_texture = -1;   ///< index into Scene::textures, -1: none
-    float metallic = 0;            ///< [0, 1]
-    float roughness = 1;           ///< perceptual, [0, 1]; GGX alpha is its square
-    glm::vec3 emissive{0};         ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
-    float transmission = 0;        ///< share of the non-reflected light that passes, [0, 1]
-    float ior = 1.5f;              ///< index of refraction, ≥ 1
-    float thickness = 0;           ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
+    glm::vec3 base_color{1};         ///< linear, [0, 1]
+    float alpha = 1;                 ///< base colour alpha, [0, 1]
+    int base_color_texture = -1;     ///< index into Scene::textures, -1: none
+    float metallic = 0;              ///< [0, 1]
+    float roughness = 1;             ///< perceptual, [0, 1]; GGX alpha is its square
+    glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
+    float transmission = 0;          ///< share of the non-reflected light that passes, [0, 1]
+    float ior = 1.5f;                ///< index of refraction, ≥ 1
+    float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
     float attenuation_distance = std::numeric_limits<float>::infinity();
-    bool unlit = false;            ///< KHR_materials_unlit: base colour as it is
+    bool unlit = false;  ///< KHR_materials_unlit: base colour as it is
 };
 
 /// Triangles of one material. `positions`, `normals`, `uvs`, `colors` are per vertex; `uvs` and `colors` may be empty.
 struct Primitive {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;   ///< unit length, same count as positions
-    std::vector<glm::vec2> uvs;       ///< texture coordinates of the base colour (the set and transform already applied)
-    std::vector<glm::vec4> colors;    ///< linear vertex colour that multiplies the base colour
+    std::vector<glm::vec3> normals;  ///< unit length, same count as positions
+    std::vector<glm::vec2> uvs;      ///< texture coordinates of the base colour (the set and transform already applied)
+    std::vector<glm::vec4> colors;   ///< linear vertex colour that multiplies the base colour
     std::vector<glm::uvec3> triangles;
     uint32_t material = 0;
 };
@@ -58,16 +59,16 @@ struct Mesh {
 struct Camera {
     std::string name;
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
-    float vertical_fov = 0.8f;         ///< radians, (0, π); unused if orthographic
-    float orthographic_height = 0;     ///< > 0: an orthographic camera that sees this height
+    float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
+    float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
 };
 
 struct Light {
     enum class Kind : uint8_t { directional, point, spot };
     std::string name;
     Kind kind = Kind::directional;
-    glm::vec3 color{1};          ///< linear, times intensity: lux (directional), candela (point, spot)
-    glm::vec3 position{0};       ///< world space
+    glm::vec3 color{1};             ///< linear, times intensity: lux (directional), candela (point, spot)
+    glm::vec3 position{0};          ///< world space
     glm::vec3 direction{0, -1, 0};  ///< unit, the way the light travels
     float range = std::numeric_limits<float>::infinity();  ///< metres, point and spot only
     float inner_cone = 0, outer_cone = 0.785398f;          ///< spot: half angles, radians
@@ -75,16 +76,16 @@ struct Light {
 
 struct Node {
     std::string name;
-    int parent = -1;                    ///< index into Scene::nodes; a parent always precedes its children
-    glm::mat4 local{1};                 ///< node to parent
+    int parent = -1;     ///< index into Scene::nodes; a parent always precedes its children
+    glm::mat4 local{1};  ///< node to parent
     int mesh = -1, camera = -1, light = -1;
-    int source = -1;                    ///< glTF: index into the file's own nodes (animations and skins speak of those)
+    int source = -1;  ///< glTF: index into the file's own nodes (animations and skins speak of those)
 };
 
 /// Where light comes from on a miss.
 struct Sky {
-    bool procedural = false;       ///< a clear sky with a sun of its own; false: what the caller says (image or colour)
-    glm::vec3 sun_direction{0};    ///< unit, from the scene to the sun
+    bool procedural = false;     ///< a clear sky with a sun of its own; false: what the caller says (image or colour)
+    glm::vec3 sun_direction{0};  ///< unit, from the scene to the sun
 };
 
 struct Animation {
@@ -93,27 +94,29 @@ struct Animation {
 };
 
 struct Scene {
-    std::string name;                 ///< "builtin:teapots" or the file's name
+    std::string name;  ///< "builtin:teapots" or the file's name
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
-    std::vector<Node> nodes;          ///< parents first; only what the file's default scene shows
-    std::vector<Camera> cameras;      ///< in world space, in the order in which the file's nodes show them
-    std::vector<Light> lights;        ///< in world space
-    std::vector<Animation> animations;  ///< listed only; playing them is the animation module's work
-    std::vector<std::string> extensions_used;         ///< as the file says, sorted
+    std::vector<Node> nodes;                   ///< parents first; only what the file's default scene shows
+    std::vector<Camera> cameras;               ///< in world space, in the order in which the file's nodes show them
+    std::vector<Light> lights;                 ///< in world space
+    std::vector<Animation> animations;         ///< listed only; playing them is the animation module's work
+    std::vector<std::string> extensions_used;  ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
-    std::vector<std::string> notes;   ///< what was dropped or ignored, one line each, with counts ("3 zero-area triangles dropped")
+    std::vector<std::string>
+        notes;  ///< what was dropped or ignored, one line each, with counts ("3 zero-area triangles dropped")
 };
 
-/// All triangles of the scene in world space, in file order: nodes in order of the hierarchy (depth first), primitives in
-/// order, triangles in order. A triangle's index here is the one that HITS.npy reports. Degenerate triangles keep their
-/// index; nothing is reordered. Under a mirroring transform the second and third corner swap, so that the front stays in front.
+/// All triangles of the scene in world space, in file order: nodes in order of the hierarchy (depth first), primitives
+/// in order, triangles in order. A triangle's index here is the one that HITS.npy reports. Degenerate triangles keep
+/// their index; nothing is reordered. Under a mirroring transform the second and third corner swap, so that the front
+/// stays in front.
 struct Geometry {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;   ///< one per position, unit
-    std::vector<glm::vec2> uvs;       ///< one per position (0 where the file has none)
-    std::vector<glm::vec4> colors;    ///< one per position, or empty if no primitive has colours
+    std::vector<glm::vec3> normals;  ///< one per position, unit
+    std::vector<glm::vec2> uvs;      ///< one per position (0 where the file has none)
+    std::vector<glm::vec4> colors;   ///< one per position, or empty if no primitive has colours
     std::vector<glm::uvec3> triangles;
     std::vector<uint32_t> materials;  ///< one per triangle
     glm::vec3 lower{0}, upper{0};     ///< bounds of all referenced positions; lower > upper: no triangle
@@ -121,9 +124,9 @@ struct Geometry {
 };
 
 /// Reads a scene: "builtin:NAME" or a file (.gltf, .glb; .obj, .ply, .stl, .off through Assimp).
-/// Throws Error (one line: what, where, what to do) for a file that is missing, empty, truncated, without triangles, with
-/// indices or accessors out of range, with NaN or infinite vertices, or that requires an unknown extension. A glTF URI never
-/// leads outside the file's folder.
+/// Throws Error (one line: what, where, what to do) for a file that is missing, empty, truncated, without triangles,
+/// with indices or accessors out of range, with NaN or infinite vertices, or that requires an unknown extension. A glTF
+/// URI never leads outside the file's folder.
 Scene load_scene(const std::string& name);
 
 /// The built-in scenes' names with a line of description each ("blob:N" stands for any N).

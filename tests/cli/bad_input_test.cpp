@@ -16,7 +16,8 @@ class BadInput : public ProgramTest {
         put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
         expect_refused(run({"trace", in(name), "--rays", in("rays.npy"), "--out", out("hits.npy")}), 1, says);
     }
-    void expect_bad_gltf(const nlohmann::json& gltf, const std::string& says, const std::string& bytes = square_bytes()) const {
+    void expect_bad_gltf(const nlohmann::json& gltf, const std::string& says,
+                         const std::string& bytes = square_bytes()) const {
         put("square.bin", bytes);
         put("bad.gltf", gltf.dump());
         expect_bad_scene("bad.gltf", says);
@@ -46,15 +47,17 @@ TEST_F(BadInput, FilesThatHoldNoMesh) {
 TEST_F(BadInput, TruncatedFiles) {
     const std::string glb_json = square_gltf().dump();
     const auto word = [](uint32_t value) { return bytes_of(std::vector<uint32_t>{value}); };
-    const std::string glb = "glTF" + word(2) + word(20 + uint32_t(glb_json.size())) + word(uint32_t(glb_json.size())) + "JSON" + glb_json;
+    const std::string glb =
+        "glTF" + word(2) + word(20 + uint32_t(glb_json.size())) + word(uint32_t(glb_json.size())) + "JSON" + glb_json;
     put("cut.glb", glb.substr(0, glb.size() / 2));
     expect_bad_scene("cut.glb", "truncated");
     put("cut.gltf", glb_json.substr(0, glb_json.size() / 2));
     expect_bad_scene("cut.gltf", "cut.gltf");
     put("cut.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n");
     expect_bad_scene("cut.off", "cut.off");
-    put("cut.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n1234");
+    put("cut.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n1234");
     expect_bad_scene("cut.ply", "cut.ply");
     put("cut.stl", std::string(80, ' ') + word(100) + "1234");
     expect_bad_scene("cut.stl", "cut.stl");
@@ -107,7 +110,8 @@ TEST_F(BadInput, NothingToSee) {
     put("line.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nv 5 5 5\nf 1 2 3\nf 1 1 4\n");
     put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
     expect_refused(render(in("line.obj")), 1, "none of its 2 triangles has an area");
-    expect_refused(run({"trace", in("line.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy")}), 1, "none of its 2 triangles has an area");
+    expect_refused(run({"trace", in("line.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy")}), 1,
+                   "none of its 2 triangles has an area");
     EXPECT_NE(run({"info", in("line.obj")}).out.find("2 (2 without area)"), std::string::npos);
     put("points.obj", "v 0 0 0\nv 1 1 1\n");
     expect_bad_scene("points.obj", "points.obj");
@@ -124,7 +128,9 @@ TEST_F(BadInput, ExtensionsAndForeignFolders) {
     expect_bad_gltf(gltf, "EXT_teleport");
     std::filesystem::create_directory(folder / "inside");
     put("secret.bin", square_bytes());
-    for (const std::string& uri : std::vector<std::string>{"../secret.bin", "%2e%2e/secret.bin", "a/../../secret.bin", in("secret.bin"), std::string("file://") + in("secret.bin")}) {
+    for (const std::string& uri :
+         std::vector<std::string>{"../secret.bin", "%2e%2e/secret.bin", "a/../../secret.bin", in("secret.bin"),
+                                  std::string("file://") + in("secret.bin")}) {
         gltf = square_gltf();
         gltf["buffers"][0]["uri"] = uri;
         put("inside/bad.gltf", gltf.dump());
@@ -147,7 +153,9 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
     put("cube.obj", kCube);
     put("file", "x");
     std::filesystem::create_directory(folder / "folder.png");
-    const auto to = [&](const std::string& path) { return run({"render", in("cube.obj"), "-o", path, "--size", "64x48"}); };
+    const auto to = [&](const std::string& path) {
+        return run({"render", in("cube.obj"), "-o", path, "--size", "64x48"});
+    };
     expect_refused(to(out("gone/a.png")), 1, "there is no folder");
     expect_refused(to(in("folder.png")), 1, "it is a folder");
     expect_refused(to(in("file/a.png")), 1, "is not a folder");
@@ -157,7 +165,8 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
     expect_refused(to(""), 1, "name it .png, .exr or .hdr");
     expect_refused(render(in("cube.obj"), {"--stats", out("gone/a.json")}), 1, "there is no folder");
     put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
-    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("gone/h.npy")}), 1, "there is no folder");
+    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("gone/h.npy")}), 1,
+                   "there is no folder");
     expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", in("rays.npy")}), 1, "is an input");
 }
 
@@ -212,10 +221,12 @@ TEST_F(BadInput, RayFiles) {
 TEST_F(BadInput, NoVulkanDriver) {
     put("cube.obj", kCube);
     put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
-    const std::map<std::string, std::string> none = {{"VK_ICD_FILENAMES", in("none.json")}, {"VK_DRIVER_FILES", in("none.json")}};
+    const std::map<std::string, std::string> none = {{"VK_ICD_FILENAMES", in("none.json")},
+                                                     {"VK_DRIVER_FILES", in("none.json")}};
     expect_refused(run({"devices"}, none), 1, "mesa-vulkan-drivers");
     expect_refused(run({"render", in("cube.obj"), "-o", out("a.png")}, none), 1, "mesa-vulkan-drivers");
-    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy")}, none), 1, "mesa-vulkan-drivers");
+    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy")}, none), 1,
+                   "mesa-vulkan-drivers");
     EXPECT_EQ(run({"info", in("cube.obj")}, none).status, 0);
 }
 

@@ -11,7 +11,8 @@ class InfoCommand : public ProgramTest {
         std::string plain;
         for (const char c : text)
             if (c != ' ' || plain.empty() || plain.back() != ' ') plain += c;
-        for (const std::string& part : parts) EXPECT_NE(plain.find(part), std::string::npos) << part << "\nin:\n" << plain;
+        for (const std::string& part : parts)
+            EXPECT_NE(plain.find(part), std::string::npos) << part << "\nin:\n" << plain;
     }
 };
 
@@ -19,7 +20,8 @@ TEST_F(InfoCommand, CountsOfAMesh) {
     put("cube.obj", kCube);
     const Outcome run = this->run({"info", in("cube.obj")});
     expect_done(run, {});
-    expect_says(run.out, {"triangles 12 (0 without area)", "bounds 0 0 0 to 1 1 1", "meshes 1", "materials 1", "cameras 0", "animations 0", "lights 0"});
+    expect_says(run.out, {"triangles 12 (0 without area)", "bounds 0 0 0 to 1 1 1", "meshes 1", "materials 1",
+                          "cameras 0", "animations 0", "lights 0"});
 }
 
 TEST_F(InfoCommand, EverythingAGltfHolds) {
@@ -27,8 +29,12 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
     gltf["nodes"][0]["translation"] = {0, 0, 2};
     gltf["nodes"].push_back({{"camera", 0}});
     gltf["scenes"][0]["nodes"] = {0, 1};
-    gltf["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0471976}, {"znear", 0.1}}}, {"name", "front\nrow"}}};
-    gltf["materials"] = {{{"name", "amber"}, {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1.55}}}}}}};
+    gltf["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1.0471976}, {"znear", 0.1}}}, {"name", "front\nrow"}}};
+    gltf["materials"] = {
+        {{"name", "amber"},
+         {"extensions",
+          {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1.55}}}}}}};
     gltf["meshes"][0]["name"] = "pane";
     gltf["meshes"][0]["primitives"][0]["material"] = 0;
     gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_sheen"};
@@ -36,8 +42,9 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
     put("square.gltf", gltf.dump());
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
-    expect_says(run.out, {"triangles 2 (0 without area)", "bounds -1 -1 2 to 1 1 2", "pane: 2 triangles", "amber:", "transmission 1", "1.55",
-                          "front row: eye 0 0 0, vertical field of view 60.0 degrees", "extensions used KHR_materials_ior, KHR_materials_sheen, KHR_materials_transmission",
+    expect_says(run.out, {"triangles 2 (0 without area)", "bounds -1 -1 2 to 1 1 2", "pane: 2 triangles", "amber:",
+                          "transmission 1", "1.55", "front row: eye 0 0 0, vertical field of view 60.0 degrees",
+                          "extensions used KHR_materials_ior, KHR_materials_sheen, KHR_materials_transmission",
                           "extensions without effect KHR_materials_sheen"});
 }
 

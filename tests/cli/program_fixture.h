@@ -31,7 +31,7 @@ struct Outcome {
 
 /// Starts the program with `variables` added to the environment and waits for it.
 inline Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& scratch,
-                       const std::map<std::string, std::string>& variables = {}) {
+                           const std::map<std::string, std::string>& variables = {}) {
     std::vector<char*> argv;
     std::string program = PEELRAY_PROGRAM;
     std::vector<std::string> copies = arguments;
@@ -73,7 +73,8 @@ class ProgramTest : public TempFolder {
         std::filesystem::create_directory(folder / "scratch");
     }
 
-    Outcome run(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& variables = {}) const {
+    Outcome run(const std::vector<std::string>& arguments,
+                const std::map<std::string, std::string>& variables = {}) const {
         return run_program(arguments, folder / "scratch", variables);
     }
     std::string in(const std::string& name) const { return folder / name; }
@@ -82,7 +83,8 @@ class ProgramTest : public TempFolder {
     /// The names in out/, sorted.
     std::vector<std::string> outputs() const {
         std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(folder / "out")) names.push_back(entry.path().filename());
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
+            names.push_back(entry.path().filename());
         std::sort(names.begin(), names.end());
         return names;
     }
@@ -108,7 +110,8 @@ class ProgramTest : public TempFolder {
     }
 
     /// `peelray render SCENE -o out/a.png --size 64x48 …`
-    Outcome render(const std::string& scene, std::vector<std::string> more = {}, const std::string& name = "a.png") const {
+    Outcome render(const std::string& scene, std::vector<std::string> more = {},
+                   const std::string& name = "a.png") const {
         std::vector<std::string> arguments = {"render", scene, "-o", out(name), "--size", "64x48"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run(arguments);
@@ -143,7 +146,8 @@ inline nlohmann::json square_gltf() {
 }
 
 /// A .npy file: version 1.0 with this header and body.
-inline std::string npy(const std::string& descr, const std::string& shape, const std::string& body, bool fortran = false) {
+inline std::string npy(const std::string& descr, const std::string& shape, const std::string& body,
+                       bool fortran = false) {
     std::string header =
         "{'descr': " + descr + ", 'fortran_order': " + (fortran ? "True" : "False") + ", 'shape': " + shape + ", }";
     while ((10 + header.size() + 1) % 64) header += ' ';

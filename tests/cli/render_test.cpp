@@ -55,12 +55,15 @@ TEST_F(RenderCommand, Formats) {
     ASSERT_EQ(exr.pixels.size(), 64u * 48u);
     ASSERT_EQ(hdr.pixels.size(), exr.pixels.size());
     for (size_t i = 0; i < exr.pixels.size(); i++)
-        for (int c = 0; c < 3; c++) ASSERT_NEAR(exr.pixels[i][c], hdr.pixels[i][c], 0.02 * std::max({exr.pixels[i].x, exr.pixels[i].y, exr.pixels[i].z}));
+        for (int c = 0; c < 3; c++)
+            ASSERT_NEAR(exr.pixels[i][c], hdr.pixels[i][c],
+                        0.02 * std::max({exr.pixels[i].x, exr.pixels[i].y, exr.pixels[i].z}));
 }
 
 TEST_F(RenderCommand, AuxiliaryPictures) {
-    expect_done(render(in("cube.obj"), {"--aov", "all", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0"}),
-                {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+    expect_done(
+        render(in("cube.obj"), {"--aov", "all", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0"}),
+        {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
     // The pixel right of and above the centre sees the near face at a distance of 2.
     EXPECT_NEAR(read_hdr(out("a.depth.exr")).at(32, 23).x, 2, 0.01);
     EXPECT_EQ(read_hdr(out("a.material.exr")).at(32, 23).x, 0);
@@ -72,9 +75,11 @@ TEST_F(RenderCommand, AuxiliaryPicturesByName) {
 }
 
 TEST_F(RenderCommand, Stats) {
-    expect_done(render("builtin:teapots", {"--stats", out("s.json"), "--ldc", "64", "--hit", "exact"}), {"a.png", "s.json"});
+    expect_done(render("builtin:teapots", {"--stats", out("s.json"), "--ldc", "64", "--hit", "exact"}),
+                {"a.png", "s.json"});
     const auto stats = nlohmann::json::parse(get(out("s.json")));
-    for (const char* key : {"device", "driver", "api_version", "commit", "passes", "ldc", "rays", "mrays_per_second", "triangles", "image"})
+    for (const char* key : {"device", "driver", "api_version", "commit", "passes", "ldc", "rays", "mrays_per_second",
+                            "triangles", "image"})
         EXPECT_TRUE(stats.contains(key)) << key;
     EXPECT_EQ(stats["image"], nlohmann::json({64, 48}));
     EXPECT_GT(stats["triangles"], 1000);
@@ -115,8 +120,11 @@ TEST_F(RenderCommand, SameInputSameFile) {
 TEST_F(RenderCommand, CamerasByNameAndNumber) {
     auto gltf = square_gltf();
     gltf["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}, {"name", "near"}},
-                       {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 3}, {"znear", 0.1}, {"zfar", 10}}}, {"name", "flat"}}};
-    gltf["nodes"] = {{{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, 3}}}, {{"camera", 1}, {"translation", {0, 0, 4}}}};
+                       {{"type", "orthographic"},
+                        {"orthographic", {{"xmag", 3}, {"ymag", 3}, {"znear", 0.1}, {"zfar", 10}}},
+                        {"name", "flat"}}};
+    gltf["nodes"] = {
+        {{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, 3}}}, {{"camera", 1}, {"translation", {0, 0, 4}}}};
     gltf["scenes"][0]["nodes"] = {0, 1, 2};
     put("square.bin", square_bytes());
     put("cameras.gltf", gltf.dump());
@@ -131,14 +139,19 @@ TEST_F(RenderCommand, CamerasByNameAndNumber) {
 }
 
 TEST_F(RenderCommand, EyeLookUpFov) {
-    const auto half_height = [](double distance, double size) { return 2 * std::atan(size / 2 / distance) * 180 / 3.14159265358979; };
+    const auto half_height = [](double distance, double size) {
+        return 2 * std::atan(size / 2 / distance) * 180 / 3.14159265358979;
+    };
     // The near face, at a distance of 2, fills exactly the middle half of the picture's height.
     const std::string fov = std::to_string(half_height(2, 2));
-    expect_done(render(in("cube.obj"), {"--aov", "depth", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up", "0,1,0", "--fov", fov}), {"a.depth.exr", "a.png"});
+    expect_done(render(in("cube.obj"),
+                       {"--aov", "depth", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up", "0,1,0", "--fov", fov}),
+                {"a.depth.exr", "a.png"});
     const Image depth = read_hdr(out("a.depth.exr"));
     for (uint32_t y = 0; y < 48; y++) EXPECT_EQ(depth.at(32, y).x < 100, y >= 12 && y < 36) << y;
     // Turned by a right angle the world's +y points to the right.
-    expect_done(render(in("cube.obj"), {"--aov", "position", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up", "-1,0,0", "--fov", fov}),
+    expect_done(render(in("cube.obj"), {"--aov", "position", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0", "--up",
+                                        "-1,0,0", "--fov", fov}),
                 {"a.depth.exr", "a.png", "a.position.exr"});
     const Image position = read_hdr(out("a.position.exr"));
     EXPECT_GT(position.at(40, 24).y, position.at(26, 24).y);
@@ -160,7 +173,8 @@ TEST_F(RenderCommand, BackgroundAndEnvironment) {
 
 TEST_F(RenderCommand, ExposureAndToneCurve) {
     const auto grey = [&](const std::string& level, const std::string& stops, const std::string& curve) {
-        bytes(in("cube.obj"), away({"--background", level + "," + level + "," + level, "--exposure", stops, "--tonemap", curve}));
+        bytes(in("cube.obj"),
+              away({"--background", level + "," + level + "," + level, "--exposure", stops, "--tonemap", curve}));
         return int(read_ldr(out("a.png")).pixels.front() & 255);
     };
     EXPECT_EQ(grey("0.5", "0", "none"), 188);  // sRGB of one half
@@ -183,18 +197,23 @@ TEST_F(RenderCommand, EffectsBouncesSamplesMaterials) {
     EXPECT_NE(bytes(scene, {"--tracer", "none"}), plain);
     EXPECT_NE(bytes(scene, {"--effects", "reflection,refraction,shadow,ambient"}), plain);
     const std::string cube = bytes(in("cube.obj"));
-    for (const std::string material : {"mirror", "glass", "clay"}) EXPECT_NE(bytes(in("cube.obj"), {"--material", material}), cube) << material;
+    for (const std::string material : {"mirror", "glass", "clay"})
+        EXPECT_NE(bytes(in("cube.obj"), {"--material", material}), cube) << material;
     EXPECT_NE(bytes(in("cube.obj"), {"--floor"}), cube);
 }
 
 TEST_F(RenderCommand, HitTestsAndResolutions) {
     for (const std::string hit : {"exact", "planar"})
-        for (const std::string n : {"16", "128"}) bytes(in("cube.obj"), {"--hit", hit, "--ldc", n, "--builder", "compute", "--traversal", "voxel", "--material", "mirror", "--floor"});
+        for (const std::string n : {"16", "128"})
+            bytes(in("cube.obj"), {"--hit", hit, "--ldc", n, "--builder", "compute", "--traversal", "voxel",
+                                   "--material", "mirror", "--floor"});
 }
 
 TEST_F(RenderCommand, ValidationLayersAreSilent) {
-    expect_done(render("builtin:glass", {"--validate", "--aov", "all", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}),
-                {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+    expect_done(
+        render("builtin:glass",
+               {"--validate", "--aov", "all", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}),
+        {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
 }
 
 TEST_F(RenderCommand, TrianglesWithoutAreaAreCounted) {
@@ -211,7 +230,9 @@ TEST_F(RenderCommand, RepeatedFramesAreTheSamePicture) {
 
 TEST_F(RenderCommand, OldPictureIsReplacedAndCacheMayBeUnwritable) {
     put("out/a.png", "old");
-    expect_done(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", "1x1"}, {{"XDG_CACHE_HOME", "/proc/none"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}), {"a.png"});
+    expect_done(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", "1x1"},
+                    {{"XDG_CACHE_HOME", "/proc/none"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}),
+                {"a.png"});
     EXPECT_EQ(read_ldr(out("a.png")).width, 1u);
 }
 

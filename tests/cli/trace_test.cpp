@@ -19,18 +19,21 @@ class TraceCommand : public ProgramTest {
     }
     std::vector<HitRecord> trace(const std::vector<float>& rays, std::vector<std::string> more = {}) const {
         put("rays.npy", rays_npy(rays));
-        std::vector<std::string> arguments = {"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy")};
+        std::vector<std::string> arguments = {"trace",        in("cube.obj"), "--rays",
+                                              in("rays.npy"), "--out",        out("hits.npy")};
         arguments.insert(arguments.end(), more.begin(), more.end());
         expect_done(run(arguments), {"hits.npy"});
         const std::string file = get(out("hits.npy"));
         const size_t body = file.find('\n') + 1, count = rays.size() / 8;
         EXPECT_EQ(body % 64, 0u);
         EXPECT_TRUE(file.starts_with("\x93NUMPY"));
-        EXPECT_NE(file.find("[('t', '<f4'), ('triangle', '<u4'), ('u', '<f4'), ('v', '<f4')]"), std::string::npos) << file.substr(0, body);
+        EXPECT_NE(file.find("[('t', '<f4'), ('triangle', '<u4'), ('u', '<f4'), ('v', '<f4')]"), std::string::npos)
+            << file.substr(0, body);
         EXPECT_NE(file.find("(" + std::to_string(count) + ",)"), std::string::npos) << file.substr(0, body);
         EXPECT_EQ(file.size() - body, count * sizeof(HitRecord));
         std::vector<HitRecord> hits(count);
-        if (count) std::memcpy(hits.data(), file.data() + body, std::min(file.size() - body, count * sizeof(HitRecord)));
+        if (count)
+            std::memcpy(hits.data(), file.data() + body, std::min(file.size() - body, count * sizeof(HitRecord)));
         return hits;
     }
 };
@@ -61,7 +64,8 @@ const std::vector<Known> kKnown = {
 std::vector<float> known_rays() {
     std::vector<float> rays;
     for (const Known& known : kKnown)
-        rays.insert(rays.end(), {known.ray.ox, known.ray.oy, known.ray.oz, known.ray.tmin, known.ray.dx, known.ray.dy, known.ray.dz, known.ray.tmax});
+        rays.insert(rays.end(), {known.ray.ox, known.ray.oy, known.ray.oz, known.ray.tmin, known.ray.dx, known.ray.dy,
+                                 known.ray.dz, known.ray.tmax});
     return rays;
 }
 
@@ -88,7 +92,8 @@ TEST_F(TraceCommand, KnownHits) {
 }
 
 TEST_F(TraceCommand, KnownHitsAtEveryResolutionAndUnderValidation) {
-    for (const std::string n : {"16", "100"}) expect_known(trace(known_rays(), {"--ldc", n, "--validate", "--builder", "compute", "--tracer", "ldc"}));
+    for (const std::string n : {"16", "100"})
+        expect_known(trace(known_rays(), {"--ldc", n, "--validate", "--builder", "compute", "--tracer", "ldc"}));
 }
 
 TEST_F(TraceCommand, AnyHitAgreesOnWhatIsHit) {
@@ -115,13 +120,13 @@ TEST_F(TraceCommand, PlanarFindsTheSameFaces) {
 
 TEST_F(TraceCommand, RaysWithoutMeaningMiss) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    for (const HitRecord& hit : trace({0.5f, 0.25f, 3, 0, 0, 0, 0, 100,      //
-                                       nan, 0.25f, 3, 0, 0, 0, -1, 100,      //
-                                       0.5f, 0.25f, 3, 0, nan, 0, -1, 100,   //
-                                       0.5f, 0.25f, 3, nan, 0, 0, -1, 100,   //
-                                       0.5f, 0.25f, 3, 0, 0, 0, -1, nan,     //
-                                       inf, 0.25f, 3, 0, -1, 0, 0, 100,      //
-                                       0.5f, 0.25f, 3, 5, 0, 0, -1, 1})) {
+    for (const HitRecord& hit : trace({0.5f, 0.25f, 3, 0,   0,   0, 0,  100,  //
+                                       nan,  0.25f, 3, 0,   0,   0, -1, 100,  //
+                                       0.5f, 0.25f, 3, 0,   nan, 0, -1, 100,  //
+                                       0.5f, 0.25f, 3, nan, 0,   0, -1, 100,  //
+                                       0.5f, 0.25f, 3, 0,   0,   0, -1, nan,  //
+                                       inf,  0.25f, 3, 0,   -1,  0, 0,  100,  //
+                                       0.5f, 0.25f, 3, 5,   0,   0, -1, 1})) {
         EXPECT_EQ(hit.triangle, kMiss);
         EXPECT_EQ(hit.t, inf);
     }
@@ -133,13 +138,15 @@ TEST_F(TraceCommand, NoRays) {
 
 TEST_F(TraceCommand, Stats) {
     put("rays.npy", rays_npy(known_rays()));
-    expect_done(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy"), "--stats", out("s.json"), "--repeat", "3"}),
+    expect_done(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy"), "--stats",
+                     out("s.json"), "--repeat", "3"}),
                 {"hits.npy", "s.json"});
     const auto stats = nlohmann::json::parse(get(out("s.json")));
     EXPECT_EQ(stats["rays"], kKnown.size());
     EXPECT_EQ(stats["triangles"], 12);
     EXPECT_EQ(stats["hits"], 9);
-    for (const char* key : {"device", "driver", "api_version", "commit", "build_ms", "trace_ms", "passes", "mrays_per_second", "ldc"})
+    for (const char* key :
+         {"device", "driver", "api_version", "commit", "build_ms", "trace_ms", "passes", "mrays_per_second", "ldc"})
         EXPECT_TRUE(stats.contains(key)) << key;
 }
 

@@ -39,7 +39,9 @@ TEST_F(Usage, ArgumentsMissing) {
 }
 
 TEST_F(Usage, UnknownFlagsAndSurplusArguments) {
-    expect_each(2, {{{"--sise", "1x1"}, "unknown option '--sise'"}, {{"-x"}, "unknown option '-x'"}, {{"more"}, "'more' is one argument too many"}});
+    expect_each(2, {{{"--sise", "1x1"}, "unknown option '--sise'"},
+                    {{"-x"}, "unknown option '-x'"},
+                    {{"more"}, "'more' is one argument too many"}});
     expect_refused(run({"info", "builtin:glass", "--size", "1x1"}), 2, "unknown option '--size'");
     expect_refused(run({"devices", "0"}), 2, "'0' is one argument too many");
     expect_refused(run({"trace", "--any"}), 2, "unknown option '--any'");
@@ -47,34 +49,37 @@ TEST_F(Usage, UnknownFlagsAndSurplusArguments) {
 
 TEST_F(Usage, MalformedValues) {
     put("cube.obj", kCube);
-    for (const std::string size : {"abc", "64", "64x", "x48", "64x48x2", "-64x48", "6.4x48", "64 x 48", "", "99999999999x1"})
-        expect_refused(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", size}), 2, "'" + size + "' is not a picture size");
-    expect_each(2, {{{"--hit", "sometimes"}, "'sometimes' is not one of auto|exact|planar|tolerance"},
-                    {{"--builder", "x"}, "--builder"},
-                    {{"--traversal", "x"}, "--traversal"},
-                    {{"--tracer", "x"}, "--tracer"},
-                    {{"--tonemap", "x"}, "--tonemap"},
-                    {{"--material", "wood"}, "mirror|glass|clay"},
-                    {{"--ldc", "many"}, "'many' is not auto or a number"},
-                    {{"--block", "x"}, "--block"},
-                    {{"--tolerance", "x"}, "--tolerance: 'x' is not a number"},
-                    {{"--spp", "-1"}, "'-1' is not a whole number"},
-                    {{"--spp", "1.5"}, "whole number"},
-                    {{"--bounces", "1e1"}, "whole number"},
-                    {{"--repeat", "x"}, "--repeat"},
-                    {{"--fov", "wide"}, "'wide' is not a number"},
-                    {{"--exposure", "1e"}, "'1e' is not a number"},
-                    {{"--eye", "1,2"}, "'1,2' is not three numbers X,Y,Z"},
-                    {{"--look", "1,2,3,4"}, "--look"},
-                    {{"--up", "a,b,c"}, "--up"},
-                    {{"--background", "blue"}, "three numbers R,G,B"},
-                    {{"--effects", "magic"}, "'magic' is not a list out of reflection,refraction,shadow,ambient, or none"},
-                    {{"--effects", ""}, "--effects"},
-                    {{"--aov", "depth,colour"}, "--aov"},
-                    {{"--time", "x"}, "--time"},
-                    {{"--fps", "x"}, "--fps"},
-                    {{"--spp"}, "--spp"},
-                    {{"--spp", "1", "--spp", "2"}, "--spp"}});
+    for (const std::string size :
+         {"abc", "64", "64x", "x48", "64x48x2", "-64x48", "6.4x48", "64 x 48", "", "99999999999x1"})
+        expect_refused(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", size}), 2,
+                       "'" + size + "' is not a picture size");
+    expect_each(2,
+                {{{"--hit", "sometimes"}, "'sometimes' is not one of auto|exact|planar|tolerance"},
+                 {{"--builder", "x"}, "--builder"},
+                 {{"--traversal", "x"}, "--traversal"},
+                 {{"--tracer", "x"}, "--tracer"},
+                 {{"--tonemap", "x"}, "--tonemap"},
+                 {{"--material", "wood"}, "mirror|glass|clay"},
+                 {{"--ldc", "many"}, "'many' is not auto or a number"},
+                 {{"--block", "x"}, "--block"},
+                 {{"--tolerance", "x"}, "--tolerance: 'x' is not a number"},
+                 {{"--spp", "-1"}, "'-1' is not a whole number"},
+                 {{"--spp", "1.5"}, "whole number"},
+                 {{"--bounces", "1e1"}, "whole number"},
+                 {{"--repeat", "x"}, "--repeat"},
+                 {{"--fov", "wide"}, "'wide' is not a number"},
+                 {{"--exposure", "1e"}, "'1e' is not a number"},
+                 {{"--eye", "1,2"}, "'1,2' is not three numbers X,Y,Z"},
+                 {{"--look", "1,2,3,4"}, "--look"},
+                 {{"--up", "a,b,c"}, "--up"},
+                 {{"--background", "blue"}, "three numbers R,G,B"},
+                 {{"--effects", "magic"}, "'magic' is not a list out of reflection,refraction,shadow,ambient, or none"},
+                 {{"--effects", ""}, "--effects"},
+                 {{"--aov", "depth,colour"}, "--aov"},
+                 {{"--time", "x"}, "--time"},
+                 {{"--fps", "x"}, "--fps"},
+                 {{"--spp"}, "--spp"},
+                 {{"--spp", "1", "--spp", "2"}, "--spp"}});
 }
 
 TEST_F(Usage, OptionsThatExcludeEachOther) {
@@ -129,16 +134,20 @@ TEST_F(Usage, NotBuiltYet) {
                     {{"--frames", "0:9", "--fps", "30"}, "not built into this version"}});
     expect_refused(run({"bench", "--scenes", "all"}), 1, "'bench' is not built into this version");
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
-    expect_refused(run({"compare", in("cube.obj"), "-o", out("r.html")}), 1, "'compare' is not built into this version");
+    expect_refused(run({"compare", in("cube.obj"), "-o", out("r.html")}), 1,
+                   "'compare' is not built into this version");
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
-    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block", "--ldc", "--tracer", "--device", "--validate", "--stats"};
+    const Words tracing = {"--builder", "--hit",    "--tolerance", "--traversal", "--block",
+                           "--ldc",     "--tracer", "--device",    "--validate",  "--stats"};
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
-         {"SCENE", "-o,", "--size", "--eye", "--look", "--up", "--fov", "--camera", "--env", "--sky", "--background", "--exposure", "--tonemap", "--bounces",
-          "--spp", "--effects", "--time", "--frames", "--fps", "--aov", "--material", "--floor", "--repeat", "builtin:teapots", "builtin:blob:N", "1280x1024"}},
+         {"SCENE",    "-o,",       "--size",          "--eye",          "--look",     "--up",      "--fov",
+          "--camera", "--env",     "--sky",           "--background",   "--exposure", "--tonemap", "--bounces",
+          "--spp",    "--effects", "--time",          "--frames",       "--fps",      "--aov",     "--material",
+          "--floor",  "--repeat",  "builtin:teapots", "builtin:blob:N", "1280x1024"}},
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},

@@ -37,7 +37,8 @@ TEST_F(BufferTest, MemoryIsCountedAndGivenBack) {
         b = Buffer(device(), "c", 1 << 10);
         EXPECT_LT(device().allocated(), before + (1 << 20));
         EXPECT_GE(device().peak_allocated(), before + (1 << 20));
-        Image2D image(device(), "image", 16, 16, VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+        Image2D image(device(), "image", 16, 16, VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                      VK_IMAGE_ASPECT_COLOR_BIT);
         Image2D other(std::move(image));
         EXPECT_EQ(other.width(), 16u);
     }

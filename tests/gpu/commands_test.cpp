@@ -16,7 +16,8 @@ struct Add {
 class CommandsTest : public ProbeTest {
   protected:
     void rotate(const Buffer& from, const Buffer& to, uint32_t count, uint32_t shift, uint32_t add) {
-        commands().run(device().pass("probe_rotate"), {{"from", from}, {"to", to}}, Rotate{count, shift, add}, groups_for(count, 64));
+        commands().run(device().pass("probe_rotate"), {{"from", from}, {"to", to}}, Rotate{count, shift, add},
+                       groups_for(count, 64));
     }
     void add(const Buffer& data, uint32_t count, uint32_t step) {
         commands().run(device().pass("probe_add"), {{"data", data}}, Add{count, step}, groups_for(count, 64));
@@ -85,7 +86,8 @@ VKAPI_ATTR void VKAPI_CALL count_barrier(VkCommandBuffer commands, const VkDepen
 
 TEST_F(CommandsTest, BarriersComeExactlyWhereHazardsAre) {
     const uint32_t count = 256;
-    const Buffer a = upload(std::vector<uint32_t>(count, 1)), b(device(), "b", count * 4), c(device(), "c", count * 4), d(device(), "d", 1024);
+    const Buffer a = upload(std::vector<uint32_t>(count, 1)), b(device(), "b", count * 4), c(device(), "c", count * 4),
+                 d(device(), "d", 1024);
     real_barrier = device().vk.vkCmdPipelineBarrier2;
     device().vk.vkCmdPipelineBarrier2 = count_barrier;
     barriers = 0;
@@ -116,14 +118,22 @@ TEST_F(CommandsTest, BindingsAreChecked) {
     const Rotate p{1, 0, 0};
     const std::string name = "probe_rotate";
     expect_error([&] { commands().run(pass, {{"from", a}}, p, {1}); }, {name, "2 bindings", "1"});
-    expect_error([&] { commands().run(pass, {{"from", a}, {"to", b}, {"more", b}}, p, {1}); }, {name, "2 bindings", "3"});
+    expect_error(
+        [&] {
+            commands().run(pass, {{"from", a}, {"to", b}, {"more", b}}, p, {1});
+        },
+        {name, "2 bindings", "3"});
     expect_error([&] { commands().run(pass, {{"from", a}, {"too", b}}, p, {1}); }, {name, "'to'"});
     expect_error([&] { commands().run(pass, {{"from", a}, {"from", b}}, p, {1}); }, {name, "'to'"});
     expect_error([&] { commands().run(pass, {{"from", a}, {"to", Buffer()}}, p, {1}); }, {name, "'to'"});
     expect_error([&] { commands().run(pass, {{"from", a}, {"to", b}}, uint32_t(1), {1}); }, {name, "12 bytes", "4"});
     const uint32_t most = device().limits().maxComputeWorkGroupCount[0];
     if (most != ~0u)
-        expect_error([&] { commands().run(pass, {{"from", a}, {"to", b}}, p, {most + 1}); }, {name, device().info().name});
+        expect_error(
+            [&] {
+                commands().run(pass, {{"from", a}, {"to", b}}, p, {most + 1});
+            },
+            {name, device().info().name});
     expect_error([&] { device().pass("no_such_shader"); }, {"no_such_shader"});
     // A refused run leaves the recording usable.
     commands().fill(a, 5);
@@ -221,7 +231,8 @@ TEST_F(CommandsTest, ReflectionSeesAccessNamesAndSizes) {
         ADD_FAILURE() << pass << " has no " << name;
         return ShaderBinding{};
     };
-    const ShaderBinding counters = find("scan_reduce", "counters"), sums = find("scan_reduce", "block_sums"), both = find("scan_apply", "sums");
+    const ShaderBinding counters = find("scan_reduce", "counters"), sums = find("scan_reduce", "block_sums"),
+                        both = find("scan_apply", "sums");
     EXPECT_EQ(counters.binding, 0u);
     EXPECT_TRUE(counters.reads && !counters.writes);
     EXPECT_EQ(sums.binding, 2u);
@@ -238,7 +249,8 @@ TEST_F(CommandsTest, ReflectionSeesAccessNamesAndSizes) {
         interface.reflect(shader.code);
         EXPECT_LE(interface.push_constant_bytes, 128u) << shader.name << ": more than Vulkan guarantees";
         EXPECT_LE(interface.group_size[0] * interface.group_size[1] * interface.group_size[2], 256u) << shader.name;
-        for (const auto& binding : interface.bindings) EXPECT_TRUE(binding.reads || binding.writes) << shader.name << " " << binding.name;
+        for (const auto& binding : interface.bindings)
+            EXPECT_TRUE(binding.reads || binding.writes) << shader.name << " " << binding.name;
     }
 }
 

@@ -11,8 +11,8 @@
 
 namespace peelray {
 
-/// Tests on one device, which is opened once (compiling shaders is what takes time). A test fails when the validation layers,
-/// synchronization validation included, say anything while it runs.
+/// Tests on one device, which is opened once (compiling shaders is what takes time). A test fails when the validation
+/// layers, synchronization validation included, say anything while it runs.
 class DeviceTest : public testing::Test {
   protected:
     static Device& device() {
@@ -24,7 +24,8 @@ class DeviceTest : public testing::Test {
     void SetUp() override { said_before_ = messages().size(); }
     void TearDown() override {
         // Only what is new: one bad test shall not fail all later ones.
-        for (size_t i = said_before_; i < messages().size(); i++) ADD_FAILURE() << "validation layers: " << messages()[i];
+        for (size_t i = said_before_; i < messages().size(); i++)
+            ADD_FAILURE() << "validation layers: " << messages()[i];
     }
 
     template <typename T>
@@ -55,7 +56,8 @@ void expect_error(Work&& work, std::initializer_list<std::string> parts) {
         ADD_FAILURE() << "no error; expected: " << *parts.begin();
     } catch (const Error& error) {
         const std::string text = error.what();
-        for (const auto& part : parts) EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
+        for (const auto& part : parts)
+            EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
         EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     }
 }

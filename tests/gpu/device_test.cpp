@@ -54,25 +54,29 @@ TEST_F(DeviceChoice, ByIndexAndByPartOfTheName) {
         std::transform(b.begin(), b.end(), b.begin(), ::tolower);
         EXPECT_NE(a.find(b), std::string::npos);
     }
-    EXPECT_EQ(Device().info().index, std::find_if(devices.begin(), devices.end(), [](auto& d) { return d.usable; })->index);
+    EXPECT_EQ(Device().info().index,
+              std::find_if(devices.begin(), devices.end(), [](auto& d) { return d.usable; })->index);
 }
 
 TEST_F(DeviceChoice, UnknownNamesSayWhatThereIs) {
     const std::string there = "0: " + list_devices()[0].name;
     for (const char* name : {"no such chip", "99", "-1", "00", "4294967296"})
-        expect_error([&] { Device device(DeviceOptions{name}); }, {std::string("'") + name + "'", there, "peelray devices"});
+        expect_error([&] { Device device(DeviceOptions{name}); },
+                     {std::string("'") + name + "'", there, "peelray devices"});
 }
 
 TEST_F(DeviceChoice, CheckValidationThrowsWhatTheLayersSaid) {
     Device own(DeviceOptions{"", true});
     own.check_validation();
-    // Two fills of one buffer without a barrier: also the proof that synchronization validation watches all other tests.
+    // Two fills of one buffer without a barrier: also the proof that synchronization validation watches all other
+    // tests.
     {
         Buffer buffer(own, "victim", 256);
         VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, own.queue_family};
         VkCommandPool pool;
         ASSERT_EQ(own.vk.vkCreateCommandPool(own.handle, &pool_info, nullptr, &pool), VK_SUCCESS);
-        VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+        VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                         VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
         VkCommandBuffer commands;
         ASSERT_EQ(own.vk.vkAllocateCommandBuffers(own.handle, &info, &commands), VK_SUCCESS);
         VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
@@ -84,7 +88,8 @@ TEST_F(DeviceChoice, CheckValidationThrowsWhatTheLayersSaid) {
         own.vk.vkDestroyCommandPool(own.handle, pool, nullptr);
     }
     ASSERT_FALSE(own.validation_messages().empty());
-    EXPECT_NE(own.validation_messages()[0].find("SYNC-HAZARD-WRITE-AFTER-WRITE"), std::string::npos) << own.validation_messages()[0];
+    EXPECT_NE(own.validation_messages()[0].find("SYNC-HAZARD-WRITE-AFTER-WRITE"), std::string::npos)
+        << own.validation_messages()[0];
     EXPECT_THROW(own.check_validation(), Error);
 }
 
@@ -95,7 +100,8 @@ TEST(PipelineCacheFile, UnsealGivesBackOnlyWhatSealMade) {
     EXPECT_EQ(PipelineCache::unseal(file), data);
     EXPECT_TRUE(PipelineCache::unseal(PipelineCache::seal({})).empty());
     for (size_t size = 0; size < file.size(); size++)
-        ASSERT_TRUE(PipelineCache::unseal({file.begin(), file.begin() + ptrdiff_t(size)}).empty()) << "truncated to " << size;
+        ASSERT_TRUE(PipelineCache::unseal({file.begin(), file.begin() + ptrdiff_t(size)}).empty())
+            << "truncated to " << size;
     for (size_t bit = 0; bit < file.size() * 8; bit += 3) {
         auto bad = file;
         bad[bit / 8] = char(bad[bit / 8] ^ (1 << bit % 8));
@@ -174,8 +180,8 @@ TEST_F(PipelineCacheFolder, DamagedFilesAreReplaced) {
 TEST_F(PipelineCacheFolder, UnusablePlacesAreNoError) {
     const fs::path plain = folder_ / "plain";
     std::ofstream(plain) << "not a folder";
-    for (const fs::path& path : {plain, fs::path("/proc"), fs::path("/proc/self/no/such"), fs::path("/dev/null"), fs::path("/nonexistent/x"),
-                                 fs::path(std::string(300, 'a'))}) {
+    for (const fs::path& path : {plain, fs::path("/proc"), fs::path("/proc/self/no/such"), fs::path("/dev/null"),
+                                 fs::path("/nonexistent/x"), fs::path(std::string(300, 'a'))}) {
         use(path);
         EXPECT_NO_THROW(run()) << path;
     }

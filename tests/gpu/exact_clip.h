@@ -37,8 +37,9 @@ inline Polygon clip_box(Polygon polygon, const glm::dvec3& lo, const glm::dvec3&
     return polygon;
 }
 
-/// For each edge of a triangle in (u, v): the largest signed distance (positive inside) that a square of half-width `h` around
-/// `centre` reaches; the least of the three. Negative: some edge separates the square from the triangle by that much.
+/// For each edge of a triangle in (u, v): the largest signed distance (positive inside) that a square of half-width `h`
+/// around `centre` reaches; the least of the three. Negative: some edge separates the square from the triangle by that
+/// much.
 inline double edge_distance(const std::array<glm::dvec3, 3>& t, const glm::dvec2& centre, double h) {
     const glm::dvec2 ab = glm::dvec2(t[1]) - glm::dvec2(t[0]), ac = glm::dvec2(t[2]) - glm::dvec2(t[0]);
     const double side = ab.x * ac.y - ab.y * ac.x < 0 ? -1 : 1;

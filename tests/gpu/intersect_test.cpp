@@ -31,18 +31,23 @@ class IntersectProbe : public ProbeTest {
 
 /// Solves origin + t·direction = a + u·(b - a) + v·(c - a) by Cramer's rule.
 dvec3 solve(const Ray3& r) {
-    const dvec3 e = dvec3(r.b) - dvec3(r.a), f = dvec3(r.c) - dvec3(r.a), d = r.direction, s = dvec3(r.origin) - dvec3(r.a);
+    const dvec3 e = dvec3(r.b) - dvec3(r.a), f = dvec3(r.c) - dvec3(r.a), d = r.direction,
+                s = dvec3(r.origin) - dvec3(r.a);
     const double det = glm::dot(glm::cross(e, f), -d);
-    return {glm::dot(glm::cross(e, f), s) / det, glm::dot(glm::cross(s, f), -d) / det, glm::dot(glm::cross(e, s), -d) / det};
+    return {glm::dot(glm::cross(e, f), s) / det, glm::dot(glm::cross(s, f), -d) / det,
+            glm::dot(glm::cross(e, s), -d) / det};
 }
 
 TEST_F(IntersectProbe, AgreesWithDoublePrecision) {
     std::vector<Ray3> rays;
     for (int i = 0; i < 60000; i++) {
         Ray3 r{point(-3, 3), point(-1, 1), point(-1, 1), point(-1, 1), point(-1, 1)};
-        // Half of the rays are aimed at the triangle; some run along an axis, with zeros of both signs; some are long or short.
+        // Half of the rays are aimed at the triangle; some run along an axis, with zeros of both signs; some are long
+        // or short.
         const dvec3 w(uniform(0, 1), uniform(0, 1), uniform(0, 1));
-        if (i % 2) r.direction = vec3((dvec3(r.a) * w.x + dvec3(r.b) * w.y + dvec3(r.c) * w.z) / (w.x + w.y + w.z) - dvec3(r.origin));
+        if (i % 2)
+            r.direction =
+                vec3((dvec3(r.a) * w.x + dvec3(r.b) * w.y + dvec3(r.c) * w.z) / (w.x + w.y + w.z) - dvec3(r.origin));
         if (i % 10 == 2) r.direction[i / 10 % 3] = i % 20 == 2 ? 0.0f : -0.0f;
         if (i % 10 == 4) r.direction[i / 10 % 3] = r.direction[(i / 10 + 1) % 3] = 0;
         if (i % 10 == 6) r.direction *= 1e-10f;
@@ -54,7 +59,8 @@ TEST_F(IntersectProbe, AgreesWithDoublePrecision) {
     for (size_t i = 0; i < rays.size(); i++) {
         const Ray3& r = rays[i];
         const dvec3 e = dvec3(r.b) - dvec3(r.a), f = dvec3(r.c) - dvec3(r.a), n = glm::cross(e, f);
-        const double grazing = std::abs(glm::dot(n, glm::normalize(dvec3(r.direction)))) / (glm::length(e) * glm::length(f));
+        const double grazing =
+            std::abs(glm::dot(n, glm::normalize(dvec3(r.direction)))) / (glm::length(e) * glm::length(f));
         if (grazing < 1e-2) continue;
         const dvec3 x = solve(r);
         const double margin = std::min({x.y, x.z, 1 - x.y - x.z});
@@ -87,7 +93,9 @@ TEST_F(IntersectProbe, AgreesWithDoublePrecision) {
 
 TEST_F(IntersectProbe, UvAreTheWeightsOfTheSecondAndThirdCorner) {
     const vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-    const auto results = run({{{0.5f, 0.25f, 2}, {0, 0, -1}, a, b, c}, {{0.5f, 0.25f, 2}, {0, 0, -1}, a, c, b}, {{0.5f, 0.25f, -1}, {0, 0, -1}, a, b, c}});
+    const auto results = run({{{0.5f, 0.25f, 2}, {0, 0, -1}, a, b, c},
+                              {{0.5f, 0.25f, 2}, {0, 0, -1}, a, c, b},
+                              {{0.5f, 0.25f, -1}, {0, 0, -1}, a, b, c}});
     for (const auto& r : results) EXPECT_TRUE(r.hit());
     EXPECT_EQ(results[0].uv, glm::vec2(0.5f, 0.25f));
     EXPECT_EQ(results[1].uv, glm::vec2(0.25f, 0.5f));
@@ -96,13 +104,15 @@ TEST_F(IntersectProbe, UvAreTheWeightsOfTheSecondAndThirdCorner) {
 }
 
 TEST_F(IntersectProbe, WhatSinglePrecisionDecidesNearEdgesIsRight) {
-    // Rays within a few roundings of an edge, in scenes far from the origin: either answer of the fast test must be true.
+    // Rays within a few roundings of an edge, in scenes far from the origin: either answer of the fast test must be
+    // true.
     std::vector<Ray3> rays;
     for (int i = 0; i < 60000; i++) {
         const vec3 centre = point(-1, 1) * float(std::exp2(uniform(0, 6)));
         Ray3 r{centre + point(-8, 8), {}, centre + point(-1, 1), centre + point(-1, 1), centre + point(-1, 1)};
         const double s = uniform(0, 1);
-        const dvec3 aim = dvec3(r.a) * (1 - s) + dvec3(r.b) * s + (dvec3(r.c) - dvec3(r.a)) * (uniform(-1, 1) * std::exp2(uniform(-24, -12)));
+        const dvec3 aim = dvec3(r.a) * (1 - s) + dvec3(r.b) * s +
+                          (dvec3(r.c) - dvec3(r.a)) * (uniform(-1, 1) * std::exp2(uniform(-24, -12)));
         r.direction = vec3(aim - dvec3(r.origin));
         rays.push_back(r);
     }
@@ -160,11 +170,13 @@ TEST_F(IntersectProbe, NoRaySlipsThroughASharedCorner) {
     std::vector<Ray3> rays;
     for (int i = 0; i < count; i++) {
         const vec3 tip = point(-5, 5), origin = tip + point(-20, 20), direction = tip - origin;
-        const dvec3 d = glm::normalize(dvec3(direction)), u = glm::normalize(glm::cross(d, dvec3(0.3, 0.5, 0.8))), v = glm::cross(d, u);
+        const dvec3 d = glm::normalize(dvec3(direction)), u = glm::normalize(glm::cross(d, dvec3(0.3, 0.5, 0.8))),
+                    v = glm::cross(d, u);
         vec3 rim[fan];
         for (int k = 0; k < fan; k++) {
             const double phi = 2 * 3.14159265358979 * (k + uniform(0, 0.6)) / fan;
-            rim[k] = vec3(dvec3(tip) + uniform(0.2, 2) * (u * std::cos(phi) + v * std::sin(phi)) + d * uniform(-0.3, 0.3));
+            rim[k] =
+                vec3(dvec3(tip) + uniform(0.2, 2) * (u * std::cos(phi) + v * std::sin(phi)) + d * uniform(-0.3, 0.3));
         }
         for (int k = 0; k < fan; k++) rays.push_back({origin, direction, tip, rim[k], rim[(k + 1) % fan]});
     }

@@ -47,8 +47,12 @@ class LdcMaskProbe : public ProbeTest {
     }
 };
 
-uint64_t word(const uvec2& mask) { return uint64_t(mask.y) << 32 | mask.x; }
-ivec3 cell_of(uint32_t index) { return {index % 4, index / 4 % 4, index / 16}; }
+uint64_t word(const uvec2& mask) {
+    return uint64_t(mask.y) << 32 | mask.x;
+}
+ivec3 cell_of(uint32_t index) {
+    return {index % 4, index / 4 % 4, index / 16};
+}
 
 /// Are all cells of the box free?
 bool box_free(uint64_t mask, ivec3 lo, ivec3 hi) {
@@ -96,7 +100,8 @@ TEST_F(LdcMaskProbe, BoxesAreEmptyHoldTheirCellAndCannotGrow) {
         boxes++;
         const uint32_t box = out[i].box;
         ASSERT_LT(box, 1u << 12);
-        const ivec3 lo(box & 3, box >> 2 & 3, box >> 4 & 3), hi(box >> 6 & 3, box >> 8 & 3, box >> 10 & 3), cell = cell_of(in[i].bit);
+        const ivec3 lo(box & 3, box >> 2 & 3, box >> 4 & 3), hi(box >> 6 & 3, box >> 8 & 3, box >> 10 & 3),
+            cell = cell_of(in[i].bit);
         ASSERT_TRUE(glm::all(glm::lessThanEqual(lo, cell)) && glm::all(glm::lessThanEqual(cell, hi)));
         ASSERT_TRUE(box_free(mask, lo, hi));
         grown += lo != hi;

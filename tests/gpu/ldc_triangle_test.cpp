@@ -12,7 +12,9 @@ using glm::uvec2;
 using glm::vec2;
 using glm::vec3;
 
-dvec3 permuted(const dvec3& p, uint32_t axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]}; }
+dvec3 permuted(const dvec3& p, uint32_t axis) {
+    return {p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]};
+}
 
 // --- ldcNormal, ldcAxis, ldcCaptured, ldcProject, ldcBounds ---
 
@@ -41,7 +43,9 @@ class LdcProjectProbe : public ProbeTest {
             for (int k = 0; k < 3; k++) x.grid.dims[k] = 16 * (1 + bits() % 32);
             x.grid.origin = point(-100, 100) * x.grid.voxel;
             const dvec3 dims(x.grid.dims);
-            const auto place = [&](const dvec3& v) { return vec3(dvec3(x.grid.origin) + glm::clamp(v, dvec3(0), dims) * double(x.grid.voxel)); };
+            const auto place = [&](const dvec3& v) {
+                return vec3(dvec3(x.grid.origin) + glm::clamp(v, dvec3(0), dims) * double(x.grid.voxel));
+            };
             const dvec3 centre(uniform(0, dims.x), uniform(0, dims.y), uniform(0, dims.z));
             const double size = std::exp2(uniform(-3, 8));
             const dvec3 p = centre + unit() * size, q = centre + unit() * size;
@@ -62,7 +66,8 @@ TEST_F(LdcProjectProbe, NormalsOfNeedlesKeepTheirDirection) {
     const auto out = probe<ProjectOut>("probe_ldc_project", in);
     for (size_t i = 0; i < in.size(); i++) {
         // Edges as the shader has them; their cross product in double has no cancellation worth the name.
-        const dvec3 e(vec3((in[i].b - in[i].a) * in[i].grid.inv_voxel)), f(vec3((in[i].c - in[i].a) * in[i].grid.inv_voxel));
+        const dvec3 e(vec3((in[i].b - in[i].a) * in[i].grid.inv_voxel)),
+            f(vec3((in[i].c - in[i].a) * in[i].grid.inv_voxel));
         const dvec3 exact = glm::cross(e, f);
         for (int k = 0; k < 3; k++)
             ASSERT_NEAR(out[i].normal[k], exact[k], 3e-7 * std::abs(exact[k]) + 1e-30) << i << " component " << k;
@@ -99,7 +104,8 @@ TEST_F(LdcProjectProbe, CornersAreInVoxelsAndCounterClockwise) {
         if (in[i].axis != out[i].axis) continue;
         std::array<dvec3, 3> want;
         const vec3 corners[3] = {in[i].a, in[i].b, in[i].c};
-        for (size_t k = 0; k < 3; k++) want[k] = permuted((dvec3(corners[k]) - dvec3(g.origin)) / double(g.voxel), in[i].axis);
+        for (size_t k = 0; k < 3; k++)
+            want[k] = permuted((dvec3(corners[k]) - dvec3(g.origin)) / double(g.voxel), in[i].axis);
         if (permuted(out[i].normal, in[i].axis).z < 0) std::swap(want[1], want[2]);
         const vec3 got[3] = {out[i].a, out[i].b, out[i].c};
         for (size_t k = 0; k < 3; k++)
@@ -153,7 +159,8 @@ struct PixelOut {
 
 class LdcPixelProbe : public ProbeTest {
   protected:
-    /// Triangles (big, tiny, needles) of slopes in [-1, 1] ([-1.25, 1.25] with the overlap band) and pixels in or near their bounding box.
+    /// Triangles (big, tiny, needles) of slopes in [-1, 1] ([-1.25, 1.25] with the overlap band) and pixels in or near
+    /// their bounding box.
     std::vector<PixelIn> inputs(bool planar) {
         std::vector<PixelIn> list;
         while (list.size() < 60000) {
@@ -162,8 +169,9 @@ class LdcPixelProbe : public ProbeTest {
             dvec2 p[3];
             for (auto& q : p) q = glm::clamp(centre + size * dvec2(uniform(-1, 1), uniform(-1, 1)), dvec2(0), dvec2(n));
             const size_t kind = list.size() % 4;
-            if (kind == 1) p[2] = p[0] + (p[1] - p[0]) * uniform(-0.2, 1.2) + dvec2(uniform(-1, 1), uniform(-1, 1)) * 1e-3;
-            if (kind == 2) p[1].x = p[0].x;  // an edge along an axis
+            if (kind == 1)
+                p[2] = p[0] + (p[1] - p[0]) * uniform(-0.2, 1.2) + dvec2(uniform(-1, 1), uniform(-1, 1)) * 1e-3;
+            if (kind == 2) p[1].x = p[0].x;                                   // an edge along an axis
             if (kind == 3) p[0] = glm::floor(p[0]), p[1] = glm::floor(p[1]);  // corners on pixel corners
             PixelIn x{};
             const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
@@ -175,7 +183,8 @@ class LdcPixelProbe : public ProbeTest {
             x.a = lift(p[0]), x.b = lift(p[1]), x.c = lift(p[2]);
             // A point of the triangle, or near it.
             const double s = uniform(-0.1, 1.1), t = uniform(-0.1, 1.1);
-            const dvec2 near = p[0] + (p[1] - p[0]) * s + (p[2] - p[0]) * (t * (1 - s)) + dvec2(uniform(-1, 1), uniform(-1, 1));
+            const dvec2 near =
+                p[0] + (p[1] - p[0]) * s + (p[2] - p[0]) * (t * (1 - s)) + dvec2(uniform(-1, 1), uniform(-1, 1));
             x.pixel = ivec2(glm::clamp(glm::floor(near), dvec2(0), dvec2(n - 1)));
             const double w = w0 + glm::dot(dvec2(x.slope), dvec2(x.pixel) + 0.5 - centre);
             x.voxel_w = uint32_t(std::clamp(std::floor(w + uniform(-0.5, 0.5)), 0.0, n - 1));
@@ -250,7 +259,8 @@ TEST_F(LdcPixelProbe, DepthRangesHoldTheTriangleAndLittleMore) {
                 low = std::min(low, w), high = std::max(high, w);
             }
             if (!planar) {
-                // The part of the triangle in the pixel is in; corners of needles do not lie in their own rounded plane.
+                // The part of the triangle in the pixel is in; corners of needles do not lie in their own rounded
+                // plane.
                 for (const auto& p : inside) {
                     ASSERT_LE(out[i].depth.x, std::floor(p.z)) << i;
                     ASSERT_GE(out[i].depth.y, std::floor(p.z)) << i;
@@ -276,7 +286,8 @@ TEST_F(LdcPixelProbe, PackedSamplesDecodeWithinTheirBounds) {
         size_t clamped = 0;
         for (size_t i = 0; i < in.size(); i++) {
             const uvec2 data = out[i].packed;
-            const double w = double(data.x & 0xffff) * 5 / 65535 - 2, true_w = plane(in[i], dvec2(in[i].pixel) + 0.5) - in[i].voxel_w;
+            const double w = double(data.x & 0xffff) * 5 / 65535 - 2,
+                         true_w = plane(in[i], dvec2(in[i].pixel) + 0.5) - in[i].voxel_w;
             if (true_w > -2 && true_w < 3) {
                 // Corners are floats up to 128: their rounding is not the packing's.
                 worst_w = std::max(worst_w, std::abs(w - true_w) - 1e-7 * 256);
@@ -285,7 +296,8 @@ TEST_F(LdcPixelProbe, PackedSamplesDecodeWithinTheirBounds) {
                 ASSERT_EQ(w, true_w < 0 ? -2 : 3);
             }
             const auto slope = [](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
-            worst_slope = std::max({worst_slope, std::abs(slope(data.y) - in[i].slope.x), std::abs(slope(data.y >> 14) - in[i].slope.y)});
+            worst_slope = std::max(
+                {worst_slope, std::abs(slope(data.y) - in[i].slope.x), std::abs(slope(data.y >> 14) - in[i].slope.y)});
             ASSERT_EQ(data.y >> 28 & 3, 2u);
             ASSERT_EQ(data.y >> 30, 0u) << "no last bit yet";
             ASSERT_TRUE(!planar || data.x >> 16 == 0) << "no coverage";

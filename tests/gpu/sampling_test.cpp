@@ -40,7 +40,9 @@ class SamplingProbe : public ProbeTest {
         std::vector<GgxIn> in;
         for (int y = 0; y < count; y++)
             for (int x = 0; x < count; x++)
-                in.push_back({view, alpha, glm::min(vec2((x + uniform(0, 1)) / count, (y + uniform(0, 1)) / count), vec2(0.99999994f))});
+                in.push_back(
+                    {view, alpha,
+                     glm::min(vec2((x + uniform(0, 1)) / count, (y + uniform(0, 1)) / count), vec2(0.99999994f))});
         return in;
     }
 };
@@ -66,7 +68,8 @@ void integrate(double alpha, F&& f) {
     const int rings = 600, slices = 300;
     for (int i = 0; i < rings; i++) {
         const auto cosine = [&](double u) { return std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)); };
-        const double low = cosine((i + 1.0) / rings), high = cosine(double(i) / rings), c = cosine((i + 0.5) / rings), s = std::sqrt(1 - c * c);
+        const double low = cosine((i + 1.0) / rings), high = cosine(double(i) / rings), c = cosine((i + 0.5) / rings),
+                     s = std::sqrt(1 - c * c);
         for (int k = 0; k < slices; k++) {
             const double phi = 2 * kPi * (k + 0.5) / slices;
             f(dvec3(s * std::cos(phi), s * std::sin(phi), c), (high - low) * 2 * kPi / slices);
@@ -79,7 +82,8 @@ TEST_F(SamplingProbe, NormalsAreUnitAndUpAtTheEdges) {
     for (const float alpha : {1e-4f, 0.0025f, 0.1f, 0.5f, 1.0f})
         for (const double cosine : {1e-3, 0.01, 0.5, 0.9999, 1.0})
             for (const float x : {0.0f, 1e-7f, 0.3f, 0.99999994f})
-                for (const float y : {0.0f, 0.25f, 0.5f, 0.7f, 0.99999994f}) in.push_back({view_at(cosine, 7 * x + y), alpha, {x, y}});
+                for (const float y : {0.0f, 0.25f, 0.5f, 0.7f, 0.99999994f})
+                    in.push_back({view_at(cosine, 7 * x + y), alpha, {x, y}});
     const auto out = probe<GgxOut>("probe_ggx", in);
     for (size_t i = 0; i < in.size(); i++) {
         const dvec3 h(out[i].half_vector);
@@ -95,9 +99,11 @@ TEST_F(SamplingProbe, DensityIsGgxAndIntegratesToOne) {
     for (const float alpha : {0.05f, 0.3f, 1.0f}) {
         const auto in = samples(vec3(0, 0, 1), alpha, 100);
         const auto out = probe<GgxOut>("probe_ggx", in);
-        for (const auto& o : out) ASSERT_NEAR(o.density / distribution(o.half_vector.z, alpha), 1, 3e-4 / (alpha * alpha));
+        for (const auto& o : out)
+            ASSERT_NEAR(o.density / distribution(o.half_vector.z, alpha), 1, 3e-4 / (alpha * alpha));
         double sum = 0;
-        integrate(alpha, [&](const dvec3& h, double solid_angle) { sum += distribution(h.z, alpha) * h.z * solid_angle; });
+        integrate(alpha,
+                  [&](const dvec3& h, double solid_angle) { sum += distribution(h.z, alpha) * h.z * solid_angle; });
         EXPECT_NEAR(sum, 1, 1e-2);
     }
 }
@@ -129,17 +135,21 @@ TEST_F(SamplingProbe, ObliqueNormalsAreVisibleNormals) {
             dvec3 mean(0), square(0), got(0), got_square(0);
             double mass = 0;
             integrate(alpha, [&](const dvec3& h, double solid_angle) {
-                const double weight = masking(v.z, alpha) * std::max(0.0, glm::dot(v, h)) * distribution(h.z, alpha) / v.z * solid_angle;
+                const double weight =
+                    masking(v.z, alpha) * std::max(0.0, glm::dot(v, h)) * distribution(h.z, alpha) / v.z * solid_angle;
                 mass += weight;
                 mean += weight * h;
                 square += weight * h * h;
             });
             EXPECT_NEAR(mass, 1, 1e-2) << "the reference itself";
             const auto out = probe<GgxOut>("probe_ggx", samples(view, alpha, 200));
-            for (const auto& o : out) got += dvec3(o.half_vector), got_square += dvec3(o.half_vector) * dvec3(o.half_vector);
+            for (const auto& o : out)
+                got += dvec3(o.half_vector), got_square += dvec3(o.half_vector) * dvec3(o.half_vector);
             for (int k = 0; k < 3; k++) {
-                EXPECT_NEAR(got[k] / double(out.size()), mean[k] / mass, 6e-3) << "alpha " << alpha << " cosine " << cosine << " axis " << k;
-                EXPECT_NEAR(got_square[k] / double(out.size()), square[k] / mass, 6e-3) << "alpha " << alpha << " cosine " << cosine << " axis " << k;
+                EXPECT_NEAR(got[k] / double(out.size()), mean[k] / mass, 6e-3)
+                    << "alpha " << alpha << " cosine " << cosine << " axis " << k;
+                EXPECT_NEAR(got_square[k] / double(out.size()), square[k] / mass, 6e-3)
+                    << "alpha " << alpha << " cosine " << cosine << " axis " << k;
             }
         }
 }
@@ -162,7 +172,9 @@ TEST_F(SamplingProbe, WhiteFurnaceLosesLightButNeverGainsAny) {
             integrate(alpha, [&](const dvec3& h, double solid_angle) {
                 const double v_h = glm::dot(v, h);
                 const dvec3 l = 2 * v_h * h - v;
-                if (v_h > 0 && l.z > 0) expected += distribution(h.z, alpha) * masking(v.z, alpha) * masking(l.z, alpha) * v_h / v.z * solid_angle;
+                if (v_h > 0 && l.z > 0)
+                    expected +=
+                        distribution(h.z, alpha) * masking(v.z, alpha) * masking(l.z, alpha) * v_h / v.z * solid_angle;
             });
             EXPECT_NEAR(albedo, expected, 1.5e-2) << "alpha " << alpha << " cosine " << cosine;
         }
@@ -189,20 +201,26 @@ TEST_F(SamplingProbe, HashIsPcg3dAndPairsAreR2) {
     std::vector<RandomIn> in{{{0, 0}, 0, 0}, {{1, 2}, 0, 3}};
     for (int i = 0; i < 1000; i++) in.push_back({{bits(), bits()}, bits(), bits()});
     const auto out = probe<RandomOut>("probe_random", in);
-    for (size_t i = 0; i < in.size(); i++) {
-        uint32_t v[3] = {in[i].pixel.x, in[i].pixel.y, in[i].dimension};
-        for (auto& x : v) x = x * 1664525u + 1013904223u;
+    const auto pcg3d = [](uint32_t x, uint32_t y, uint32_t z) {
+        uvec3 v(x, y, z);
         const auto mix = [&] {
             for (int k = 0; k < 3; k++) v[k] += v[(k + 1) % 3] * v[(k + 2) % 3];
         };
+        for (int k = 0; k < 3; k++) v[k] = v[k] * 1664525u + 1013904223u;
         mix();
-        for (auto& x : v) x ^= x >> 16;
+        for (int k = 0; k < 3; k++) v[k] ^= v[k] >> 16;
         mix();
-        ASSERT_EQ(out[i].hash, uvec3(v[0], v[1], v[2]));
-        // Roberts' R2 sequence: steps of 1/g and 1/g², g the plastic number, the root of g³ = g + 1.
+        return v;
+    };
+    for (size_t i = 0; i < in.size(); i++) {
+        const RandomIn& x = in[i];
+        ASSERT_EQ(out[i].hash, pcg3d(x.pixel.x, x.pixel.y, x.dimension));
+        // Roberts' R2 sequence: steps of 1/g and 1/g², g the plastic number, the root of g³ = g + 1; the probe's seed
+        // is a hash.
+        const uvec3 shift = pcg3d(pcg3d(x.pixel.x, x.pixel.y, 0).x, x.dimension, 0x9e3779b9u);
         for (int k = 0; k < 2; k++) {
             const auto step = uint32_t(std::llround(4294967296.0 / std::pow(1.32471795724474602596, k + 1)));
-            ASSERT_EQ(out[i].pair[k], float((v[k] + step * in[i].index) >> 8) / 16777216.0f);
+            ASSERT_EQ(out[i].pair[k], float((shift[k] + step * x.index) >> 8) / 16777216.0f);
         }
         ASSERT_TRUE(out[i].pair.x >= 0 && out[i].pair.x < 1 && out[i].pair.y >= 0 && out[i].pair.y < 1);
     }
@@ -233,7 +251,8 @@ TEST_F(SamplingProbe, RandomPairsAreUniformOverPixelsAndOverSamples) {
         between += (a[i].pair.x - 0.5) * (b[i].pair.x - 0.5) * 12;
         beside += (a[i].pair.x - 0.5) * (a[i + 1].pair.x - 0.5) * 12;
     }
-    for (const double sum : {across, between, beside}) EXPECT_NEAR(sum / double(a.size()), 0, 0.016) << "a correlation";  // four sigma
+    for (const double sum : {across, between, beside})
+        EXPECT_NEAR(sum / double(a.size()), 0, 0.016) << "a correlation";  // four sigma
 }
 
 }  // namespace

@@ -9,16 +9,19 @@ using glm::uvec2;
 class Scan : public ProbeTest {
   protected:
     /// Runs the three passes as the builder does; returns what `sums` and the grand total hold afterwards.
-    std::pair<std::vector<uvec2>, uvec2> scan(const std::vector<uvec2>& values, uint32_t capacity, const Buffer& counters, uint32_t counter) {
+    std::pair<std::vector<uvec2>, uvec2> scan(const std::vector<uvec2>& values, uint32_t capacity,
+                                              const Buffer& counters, uint32_t counter) {
         const Buffer sums = upload(values);
         const uint32_t blocks = (capacity + SCAN_BLOCK - 1) / SCAN_BLOCK;
         const Buffer block_sums(device(), "block sums", (blocks + 1) * 8);
         commands().fill(block_sums, 0xdeadbeef);
         const ScanParams p{capacity, counter};
         const Groups groups = groups_for(capacity, SCAN_BLOCK);
-        commands().run(device().pass("scan_reduce"), {{"counters", counters}, {"sums", sums}, {"block_sums", block_sums}}, p, groups);
+        commands().run(device().pass("scan_reduce"),
+                       {{"counters", counters}, {"sums", sums}, {"block_sums", block_sums}}, p, groups);
         commands().run(device().pass("scan_blocks"), {{"block_sums", block_sums}}, p, {1});
-        commands().run(device().pass("scan_apply"), {{"counters", counters}, {"sums", sums}, {"block_sums", block_sums}}, p, groups);
+        commands().run(device().pass("scan_apply"),
+                       {{"counters", counters}, {"sums", sums}, {"block_sums", block_sums}}, p, groups);
         return {download<uvec2>(sums, values.size()), download<uvec2>(block_sums, 1, blocks * 8)[0]};
     }
     std::vector<uvec2> values(size_t count) {

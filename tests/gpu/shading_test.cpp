@@ -15,8 +15,12 @@ struct Colors {
     vec3 linear, srgb, aces, neutral;
 };
 
-double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
-double linear_to_srgb(double c) { return c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1 / 2.4) - 0.055; }
+double srgb_to_linear(double c) {
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+double linear_to_srgb(double c) {
+    return c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+}
 
 TEST_F(ShadingProbe, SrgbCurvesBothWays) {
     std::vector<vec3> in;
@@ -74,10 +78,12 @@ TEST_F(ShadingProbe, TheNeutralCurveKeepsColoursUpToItsShoulder) {
         }
         compressed++;
         const double new_peak = 1 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
-        ASSERT_NEAR(std::max({got.x, got.y, got.z}), new_peak, 2e-6) << "brightness is compressed, the peak keeps its channel";
+        ASSERT_NEAR(std::max({got.x, got.y, got.z}), new_peak, 2e-6)
+            << "brightness is compressed, the peak keeps its channel";
         // Desaturation moves every channel towards the peak, by the same share.
         const double share = 1 - 1 / (0.15 * (peak - new_peak) + 1);
-        for (int k = 0; k < 3; k++) ASSERT_NEAR(got[k], (c[k] - offset) * new_peak / peak * (1 - share) + new_peak * share, 1e-5);
+        for (int k = 0; k < 3; k++)
+            ASSERT_NEAR(got[k], (c[k] - offset) * new_peak / peak * (1 - share) + new_peak * share, 1e-5);
     }
     EXPECT_GT(kept, 5000);
     EXPECT_GT(compressed, 5000);
@@ -101,7 +107,8 @@ double fresnel(double angle, double n) {
     if (sine >= 1) return 1;
     const double behind = std::asin(sine);
     if (angle < 1e-6) return std::pow((n - 1) / (n + 1), 2);
-    const double s = std::sin(angle - behind) / std::sin(angle + behind), p = std::tan(angle - behind) / std::tan(angle + behind);
+    const double s = std::sin(angle - behind) / std::sin(angle + behind),
+                 p = std::tan(angle - behind) / std::tan(angle + behind);
     return 0.5 * (s * s + p * p);
 }
 
@@ -121,15 +128,21 @@ TEST_F(ShadingProbe, FresnelAtKnownAngles) {
         const double tolerance = 2e-5 + 1e-3 * (std::abs(sine - 1) < 1e-2) + 1e-3 * (angles[i] > 1.54);
         const double expected = angles[i] > half_pi - 1e-9 ? 1 : fresnel(angles[i], eta);
         ASSERT_NEAR(out[i].reflectance, expected, tolerance) << "eta " << eta << " angle " << angles[i];
-        if (i % 501 == 0) { EXPECT_NEAR(out[i].reflectance, std::pow((eta - 1) / (eta + 1), 2), 1e-7) << "normal incidence"; }
+        if (i % 501 == 0) {
+            EXPECT_NEAR(out[i].reflectance, std::pow((eta - 1) / (eta + 1), 2), 1e-7) << "normal incidence";
+        }
         const double m = 1 - std::cos(angles[i]);
         EXPECT_NEAR(out[i].schlick, 0.04 + 0.96 * std::pow(m, 5), 1e-6);
-        if (std::abs(sine - 1) > 1e-6) { ASSERT_EQ(out[i].refracts, uint32_t(sine < 1)); }
+        if (std::abs(sine - 1) > 1e-6) {
+            ASSERT_EQ(out[i].refracts, uint32_t(sine < 1));
+        }
     }
     // Brewster's angle: no parallel light; what is left is half of the perpendicular.
     for (const double eta : {1.5, 1 / 1.5, 1.33}) {
         const double angle = std::atan(eta), perpendicular = std::cos(2 * angle);
-        const auto at = probe<Optics>("probe_fresnel", std::vector<Incidence>{{vec3(std::sin(angle), 0, -std::cos(angle)), vec3(0, 0, 1), float(eta)}});
+        const auto at = probe<Optics>(
+            "probe_fresnel",
+            std::vector<Incidence>{{vec3(std::sin(angle), 0, -std::cos(angle)), vec3(0, 0, 1), float(eta)}});
         EXPECT_NEAR(at[0].reflectance, 0.5 * perpendicular * perpendicular, 1e-6);
     }
 }
@@ -145,7 +158,8 @@ TEST_F(ShadingProbe, RefractionObeysSnell) {
     const auto out = probe<Optics>("probe_fresnel", in);
     int total = 0;
     for (size_t i = 0; i < in.size(); i++) {
-        const dvec3 d = glm::normalize(dvec3(in[i].incoming)), n = glm::normalize(dvec3(in[i].normal)), r(out[i].refracted);
+        const dvec3 d = glm::normalize(dvec3(in[i].incoming)), n = glm::normalize(dvec3(in[i].normal)),
+                    r(out[i].refracted);
         const double sine = glm::length(glm::cross(d, n)) / in[i].eta;
         if (std::abs(sine - 1) < 1e-5) continue;
         ASSERT_EQ(out[i].refracts, uint32_t(sine < 1));
@@ -175,7 +189,8 @@ struct FrameOut {
 
 TEST_F(ShadingProbe, TangentsAreAnOrthonormalFrame) {
     std::vector<FrameIn> in;
-    for (const vec3& n : {vec3(0, 0, 1), vec3(0, 0, -1), vec3(1, 0, 0), vec3(0, -1, 0), vec3(1, 0, -0.0f), vec3(1e-4f, 0, -1), vec3(0, 1e-7f, -1)})
+    for (const vec3& n : {vec3(0, 0, 1), vec3(0, 0, -1), vec3(1, 0, 0), vec3(0, -1, 0), vec3(1, 0, -0.0f),
+                          vec3(1e-4f, 0, -1), vec3(0, 1e-7f, -1)})
         in.push_back({n, n, n});
     for (int i = 0; i < 20000; i++) in.push_back({vec3(unit()), vec3(0, 0, 1), vec3(0, 0, 1)});
     const auto out = probe<FrameOut>("probe_frames", in);

@@ -1,4 +1,5 @@
-// Which triangle belongs to which voxel, in double precision on the CPU: by clipping, not by the shaders' edge functions.
+// Which triangle belongs to which voxel, in double precision on the CPU: by clipping, not by the shaders' edge
+// functions.
 #pragma once
 
 #include <cstdint>
@@ -32,28 +33,33 @@ class CpuRaster {
     CpuRaster(const CubeGrid& grid, std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles)
         : grid_(grid), positions_(positions), triangles_(triangles) {}
 
-    /// Normal, not normalised. Needles: from edges rounded as any float program rounds them, for the direction of a normal is
-    /// ill-conditioned there, and which LDI takes the triangle with which slopes is a matter of convention, not of truth.
+    /// Normal, not normalised. Needles: from edges rounded as any float program rounds them, for the direction of a
+    /// normal is ill-conditioned there, and which LDI takes the triangle with which slopes is a matter of convention,
+    /// not of truth.
     glm::dvec3 normal(uint32_t triangle) const {
         const glm::uvec3& t = triangles_[triangle];
-        const glm::vec3 e = (positions_[t.y] - positions_[t.x]) * grid_.inv_voxel, f = (positions_[t.z] - positions_[t.x]) * grid_.inv_voxel;
+        const glm::vec3 e = (positions_[t.y] - positions_[t.x]) * grid_.inv_voxel,
+                        f = (positions_[t.z] - positions_[t.x]) * grid_.inv_voxel;
         return glm::cross(glm::dvec3(e), glm::dvec3(f));
     }
     SeenTriangle seen(uint32_t triangle, uint32_t axis) const {
         SeenTriangle s;
         for (int k = 0; k < 3; k++)
-            s.corners[size_t(k)] = permuted((glm::dvec3(positions_[triangles_[triangle][k]]) - glm::dvec3(grid_.origin)) / double(grid_.voxel), axis);
+            s.corners[size_t(k)] = permuted(
+                (glm::dvec3(positions_[triangles_[triangle][k]]) - glm::dvec3(grid_.origin)) / double(grid_.voxel),
+                axis);
         const glm::dvec3 n = permuted(normal(triangle), axis);
         s.slope = {-n.x / n.z, -n.y / n.z};
         return s;
     }
 
-    /// Conservative. Must: the clipped triangle touches the (closed) voxel. May: the pixel's square is within 2·10⁻³ voxels of
-    /// the triangle's inside by every edge and by its bounding rectangle, and the voxel within 3·10⁻³ of the depth range
-    /// that the triangle's plane has over the pixel's square, cut to the triangle's own depth range.
-    /// Centre. Must: the pixel's centre is inside by more than 10⁻³. May: it is outside by at most 2·10⁻³ by every edge line (at the
-    /// tip of a needle that is farther as the crow flies), in a pixel that the bounding rectangle touches. Depth: the plane
-    /// over the footprint of half-width 0.7, with 3·10⁻³ more. Triangles whose component is 0.8 of the largest: also there.
+    /// Conservative. Must: the clipped triangle touches the (closed) voxel. May: the pixel's square is within 2·10⁻³
+    /// voxels of the triangle's inside by every edge and by its bounding rectangle, and the voxel within 3·10⁻³ of the
+    /// depth range that the triangle's plane has over the pixel's square, cut to the triangle's own depth range.
+    /// Centre. Must: the pixel's centre is inside by more than 10⁻³. May: it is outside by at most 2·10⁻³ by every edge
+    /// line (at the tip of a needle that is farther as the crow flies), in a pixel that the bounding rectangle touches.
+    /// Depth: the plane over the footprint of half-width 0.7, with 3·10⁻³ more. Triangles whose component is 0.8 of the
+    /// largest: also there.
     Expected expect(Sampling sampling) const {
         Expected result;
         for (uint32_t i = 0; i < triangles_.size(); i++) {
@@ -69,7 +75,9 @@ class CpuRaster {
             for (uint32_t axis = 0; axis < 3; axis++) {
                 const double share = m[int(axis)] / largest, limit = sampling == Sampling::centre ? 0.8 : 1;
                 const bool may = axis == first || share > limit - 1e-6;
-                const bool close = sampling == Sampling::conservative ? second(m) > largest * (1 - 1e-6) && !exact_tie(m) : share < limit + 1e-6 && axis != first;
+                const bool close = sampling == Sampling::conservative
+                                       ? second(m) > largest * (1 - 1e-6) && !exact_tie(m)
+                                       : share < limit + 1e-6 && axis != first;
                 if (!may || (sampling == Sampling::conservative && exact_tie(m) && axis != first)) continue;
                 raster(i, axis, sampling, !close, result);
             }
@@ -81,10 +89,14 @@ class CpuRaster {
         return result;
     }
 
-    static glm::dvec3 permuted(const glm::dvec3& p, uint32_t axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]}; }
+    static glm::dvec3 permuted(const glm::dvec3& p, uint32_t axis) {
+        return {p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]};
+    }
 
   private:
-    static double second(const glm::dvec3& m) { return std::max(std::min(m.x, m.y), std::min(std::max(m.x, m.y), m.z)); }
+    static double second(const glm::dvec3& m) {
+        return std::max(std::min(m.x, m.y), std::min(std::max(m.x, m.y), m.z));
+    }
     static bool exact_tie(const glm::dvec3& m) { return second(m) == std::max({m.x, m.y, m.z}); }
 
     void raster(uint32_t triangle, uint32_t axis, Sampling sampling, bool sure, Expected& out) const {
@@ -93,8 +105,10 @@ class CpuRaster {
         const glm::dvec3 dims = permuted(glm::dvec3(grid_.dims), axis);
         glm::dvec3 low = whole[0], high = whole[0];
         for (const auto& p : whole) low = glm::min(low, p), high = glm::max(high, p);
-        const int x0 = int(std::max(0.0, std::floor(low.x - 2e-3))), x1 = int(std::min(dims.x - 1, std::floor(high.x + 2e-3)));
-        const int y0 = int(std::max(0.0, std::floor(low.y - 2e-3))), y1 = int(std::min(dims.y - 1, std::floor(high.y + 2e-3)));
+        const int x0 = int(std::max(0.0, std::floor(low.x - 2e-3))),
+                  x1 = int(std::min(dims.x - 1, std::floor(high.x + 2e-3)));
+        const int y0 = int(std::max(0.0, std::floor(low.y - 2e-3))),
+                  y1 = int(std::min(dims.y - 1, std::floor(high.y + 2e-3)));
         const bool centre_only = sampling == Sampling::centre;
         const double half = centre_only ? 0.7 : 0.5;
         for (int y = y0; y <= y1; y++) {
@@ -120,7 +134,8 @@ class CpuRaster {
             }
         }
     }
-    void add(std::vector<uint64_t>& list, uint32_t axis, uint32_t triangle, int x, int y, double from, double to, double depth) const {
+    void add(std::vector<uint64_t>& list, uint32_t axis, uint32_t triangle, int x, int y, double from, double to,
+             double depth) const {
         for (int w = int(std::clamp(from, 0.0, depth - 1)); w <= int(std::clamp(to, 0.0, depth - 1)); w++) {
             glm::uvec3 voxel;
             voxel[(axis + 1) % 3] = uint32_t(x);

@@ -48,7 +48,8 @@ class Random {
     std::mt19937 generator_;
 };
 
-/// Random triangles in a box of half-size `size`: big, tiny, needles, axis-aligned, coplanar duplicates and some without area.
+/// Random triangles in a box of half-size `size`: big, tiny, needles, axis-aligned, coplanar duplicates and some
+/// without area.
 Mesh3 soup(uint32_t seed, uint32_t count, const vec3& size, float voxel) {
     Random random(seed);
     Mesh3 mesh;
@@ -57,8 +58,12 @@ Mesh3 soup(uint32_t seed, uint32_t count, const vec3& size, float voxel) {
         const vec3 centre = random.point(size * 0.95f);
         const auto near = [&](float reach) { return glm::clamp(centre + random.point(vec3(reach)), -size, size); };
         switch (i % 8) {
-            case 0: mesh.add(random.point(size), random.point(size), random.point(size)); break;
-            case 1: mesh.add(near(voxel * 0.3f), near(voxel * 0.3f), near(voxel * 0.3f)); break;
+            case 0:
+                mesh.add(random.point(size), random.point(size), random.point(size));
+                break;
+            case 1:
+                mesh.add(near(voxel * 0.3f), near(voxel * 0.3f), near(voxel * 0.3f));
+                break;
             case 2: {  // a needle, far longer than wide
                 const vec3 a = random.point(size), b = random.point(size), c = a + (b - a) * random.uniform(0, 1);
                 mesh.add(a, b, glm::clamp(c + random.point(vec3(voxel * 1e-3f)), -size, size));
@@ -72,13 +77,16 @@ Mesh3 soup(uint32_t seed, uint32_t count, const vec3& size, float voxel) {
                 break;
             }
             case 4: {  // the same triangle again, and turned over
-                const uvec3 last = mesh.triangles[mesh.triangles.size() - 1 - random.below(3) % uint32_t(mesh.triangles.size())];
+                const uvec3 last =
+                    mesh.triangles[mesh.triangles.size() - 1 - random.below(3) % uint32_t(mesh.triangles.size())];
                 const vec3 a = mesh.positions[last.x], b = mesh.positions[last.y], c = mesh.positions[last.z];
                 mesh.add(a, b, c);
                 mesh.add(b, a, c);
                 break;
             }
-            case 5: mesh.add(near(voxel * 3), near(voxel * 3), near(voxel * 3)); break;
+            case 5:
+                mesh.add(near(voxel * 3), near(voxel * 3), near(voxel * 3));
+                break;
             case 6: {
                 const vec3 a = near(voxel), b = near(voxel);
                 mesh.add(a, i % 3 ? a : b, b);
@@ -87,7 +95,8 @@ Mesh3 soup(uint32_t seed, uint32_t count, const vec3& size, float voxel) {
             case 7: {  // a diagonal normal: ties and the overlap band
                 const float r = voxel * random.uniform(1, 12);
                 const vec3 s(random.below(2) ? r : -r, random.below(2) ? r : -r, random.below(2) ? r : -r);
-                mesh.add(glm::clamp(centre + vec3(s.x, 0, 0), -size, size), glm::clamp(centre + vec3(0, s.y * random.uniform(0.8f, 1.2f), 0), -size, size),
+                mesh.add(glm::clamp(centre + vec3(s.x, 0, 0), -size, size),
+                         glm::clamp(centre + vec3(0, s.y * random.uniform(0.8f, 1.2f), 0), -size, size),
                          glm::clamp(centre + vec3(0, 0, s.z), -size, size));
                 break;
             }
@@ -128,16 +137,21 @@ class CubeTest : public DeviceTest {
         EXPECT_EQ(built.cube.counts.degenerate, expected.degenerate);
         EXPECT_EQ(built.cube.counts.invalid, 0u);
         std::vector<uint64_t> lost, foreign;
-        std::set_difference(expected.must.begin(), expected.must.end(), decoded.pairs.begin(), decoded.pairs.end(), std::back_inserter(lost));
-        std::set_difference(decoded.pairs.begin(), decoded.pairs.end(), expected.may.begin(), expected.may.end(), std::back_inserter(foreign));
-        EXPECT_TRUE(lost.empty()) << lost.size() << " of " << expected.must.size() << " lost; the first: " << describe(built.cube.grid, lost);
-        EXPECT_TRUE(foreign.empty()) << foreign.size() << " of " << decoded.pairs.size() << " foreign; the first: " << describe(built.cube.grid, foreign);
+        std::set_difference(expected.must.begin(), expected.must.end(), decoded.pairs.begin(), decoded.pairs.end(),
+                            std::back_inserter(lost));
+        std::set_difference(decoded.pairs.begin(), decoded.pairs.end(), expected.may.begin(), expected.may.end(),
+                            std::back_inserter(foreign));
+        EXPECT_TRUE(lost.empty()) << lost.size() << " of " << expected.must.size()
+                                  << " lost; the first: " << describe(built.cube.grid, lost);
+        EXPECT_TRUE(foreign.empty()) << foreign.size() << " of " << decoded.pairs.size()
+                                     << " foreign; the first: " << describe(built.cube.grid, foreign);
         for (const auto& sample : decoded.samples) {
             const uint32_t axis = sample.id & 3;
             ASSERT_EQ(sample.data.y >> 28 & 3, axis);
             const auto seen = cpu.seen(sample.id >> 2, axis);
             const dvec3 corner = CpuRaster::permuted(dvec3(sample.voxel), axis);
-            const double w = seen.plane(dvec2(corner) + 0.5) - corner.z, stored = double(sample.data.x & 0xffff) * 5 / 65535 - 2;
+            const double w = seen.plane(dvec2(corner) + 0.5) - corner.z,
+                         stored = double(sample.data.x & 0xffff) * 5 / 65535 - 2;
             // Beside the packing's 4·10⁻⁵: coordinates up to 256 and slopes are floats.
             ASSERT_NEAR(stored, std::clamp(w, -2.0, 3.0), 4.4e-5 + 3e-4) << "triangle " << (sample.id >> 2);
             const auto slope = [&](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
@@ -148,7 +162,8 @@ class CubeTest : public DeviceTest {
     }
     void expect_right(const Mesh3& mesh, uint32_t resolution) {
         for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
-            SCOPED_TRACE(testing::Message() << "N = " << resolution << (sampling == Sampling::centre ? ", centre" : ", conservative"));
+            SCOPED_TRACE(testing::Message()
+                         << "N = " << resolution << (sampling == Sampling::centre ? ", centre" : ", conservative"));
             expect_right(mesh, build(mesh, resolution, sampling), sampling);
             if (HasFailure()) return;
         }
@@ -158,13 +173,14 @@ class CubeTest : public DeviceTest {
     static std::string describe(const CubeGrid& grid, const std::vector<uint64_t>& pairs) {
         if (pairs.empty()) return "";
         const auto cell = uint32_t(pairs[0] >> 32), id = uint32_t(pairs[0]);
-        return fmt::format("triangle {} axis {} voxel {} {} {}", id >> 2, id & 3, cell % grid.dims.x, cell / grid.dims.x % grid.dims.y,
-                           cell / grid.dims.x / grid.dims.y);
+        return fmt::format("triangle {} axis {} voxel {} {} {}", id >> 2, id & 3, cell % grid.dims.x,
+                           cell / grid.dims.x % grid.dims.y, cell / grid.dims.x / grid.dims.y);
     }
 };
 
 TEST_F(CubeTest, SoupsInACubicBox) {
-    for (const uint32_t resolution : {16u, 64u, 256u}) expect_right(soup(resolution, resolution == 256 ? 150 : 400, vec3(1), 2.0f / float(resolution)), resolution);
+    for (const uint32_t resolution : {16u, 64u, 256u})
+        expect_right(soup(resolution, resolution == 256 ? 150 : 400, vec3(1), 2.0f / float(resolution)), resolution);
 }
 
 TEST_F(CubeTest, SoupsInLongAndFlatBoxes) {
@@ -176,7 +192,8 @@ TEST_F(CubeTest, SoupsInLongAndFlatBoxes) {
 TEST_F(CubeTest, FarFromTheOrigin) {
     Mesh3 mesh = soup(4, 300, vec3(1), 2.0f / 64), moved;
     for (const auto& t : mesh.triangles)
-        moved.add(mesh.positions[t.x] + vec3(500, -300, 100), mesh.positions[t.y] + vec3(500, -300, 100), mesh.positions[t.z] + vec3(500, -300, 100));
+        moved.add(mesh.positions[t.x] + vec3(500, -300, 100), mesh.positions[t.y] + vec3(500, -300, 100),
+                  mesh.positions[t.z] + vec3(500, -300, 100));
     expect_right(moved, 64);
 }
 
@@ -209,7 +226,8 @@ TEST_F(CubeTest, ThousandsOfTrianglesInOneVoxel) {
     }
     for (int i = 0; i < 1500; i++) {
         const float p = 6.2831853f * float(i) / 1500, q = 6.2831853f * float(i + 1) / 1500;
-        mesh.add({-0.5f, 0.6f, 0.1f}, {-0.5f + 0.3f * std::cos(p), 0.4f, 0.1f + 0.3f * std::sin(p)}, {-0.5f + 0.3f * std::cos(q), 0.4f, 0.1f + 0.3f * std::sin(q)});
+        mesh.add({-0.5f, 0.6f, 0.1f}, {-0.5f + 0.3f * std::cos(p), 0.4f, 0.1f + 0.3f * std::sin(p)},
+                 {-0.5f + 0.3f * std::cos(q), 0.4f, 0.1f + 0.3f * std::sin(q)});
     }
     for (const uint32_t resolution : {16u, 64u}) {
         expect_right(mesh, resolution);
@@ -274,14 +292,14 @@ TEST_F(CubeTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {
     const vec3 a(-1, -1, -1), b(1, 1, 0.5f), c(-0.5f, 1, 1);
     Mesh3 mesh;
     mesh.add(a, b, c);
-    mesh.add(a, a, c);                               // 1
-    mesh.add(c, c, c);                               // 2
-    mesh.add({-1, 0, 0}, {0, 0, 0}, {0.5f, 0, 0});   // 3
-    mesh.add({nan, 0, 0}, b, c);                     // 4
-    mesh.add(a, {0, inf, 0}, c);                     // 5
-    mesh.add(a, b, {0, 0, -inf});                    // 6
+    mesh.add(a, a, c);                              // 1
+    mesh.add(c, c, c);                              // 2
+    mesh.add({-1, 0, 0}, {0, 0, 0}, {0.5f, 0, 0});  // 3
+    mesh.add({nan, 0, 0}, b, c);                    // 4
+    mesh.add(a, {0, inf, 0}, c);                    // 5
+    mesh.add(a, b, {0, 0, -inf});                   // 6
     mesh.add({nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan});
-    mesh.add(a, c, {0.3f, 0.2f, 0.1f});              // 8
+    mesh.add(a, c, {0.3f, 0.2f, 0.1f});  // 8
     for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
         const Built built = build(mesh, 64, sampling);
         EXPECT_EQ(built.cube.counts.degenerate, 3u);
@@ -320,7 +338,8 @@ TEST(MakeGrid, HoldsTheBoxWithAVoxelAround) {
             ASSERT_GE(grid.dims[axis], 16u);
             longest = std::max(longest, grid.dims[axis]);
             // Less what the origin's own rounding takes.
-            const double low = (double(lower[axis]) - grid.origin[axis]) / grid.voxel, high = (double(upper[axis]) - grid.origin[axis]) / grid.voxel;
+            const double low = (double(lower[axis]) - grid.origin[axis]) / grid.voxel,
+                         high = (double(upper[axis]) - grid.origin[axis]) / grid.voxel;
             const double rounding = 1.2e-7 * std::abs(grid.origin[axis]) / grid.voxel + 3e-4 + 1e-3;
             ASSERT_GE(low, 1 - rounding);
             ASSERT_LE(high, grid.dims[axis] - 1 + rounding);
@@ -331,7 +350,8 @@ TEST(MakeGrid, HoldsTheBoxWithAVoxelAround) {
 
 TEST(MakeGrid, RefusesOtherResolutions) {
     for (const uint32_t resolution : {0u, 1u, 15u, 2049u, ~0u})
-        expect_error([&] { make_grid(vec3(0), vec3(1), resolution); }, {std::to_string(resolution), "16 to 2048", "--ldc"});
+        expect_error([&] { make_grid(vec3(0), vec3(1), resolution); },
+                     {std::to_string(resolution), "16 to 2048", "--ldc"});
     EXPECT_EQ(make_grid(vec3(0), vec3(1), 16).dims, uvec3(16));
     EXPECT_EQ(make_grid(vec3(0), vec3(1), 17).dims, uvec3(32));
     EXPECT_EQ(make_grid(vec3(0), vec3(1), 2048).dims, uvec3(2048));

@@ -35,7 +35,8 @@ class DecodedCube {
     std::vector<Sample> samples;
     std::vector<uint64_t> pairs;  ///< sorted
 
-    DecodedCube(const Cube& cube, const Tables& tables) : cube_(cube), tables_(tables), used_(tables.ids.size()), tops_(cube.grid.dims / 16u) {
+    DecodedCube(const Cube& cube, const Tables& tables)
+        : cube_(cube), tables_(tables), used_(tables.ids.size()), tops_(cube.grid.dims / 16u) {
         decode();
     }
 
@@ -63,22 +64,27 @@ class DecodedCube {
         EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
     }
     void check_top_box(const glm::uvec3& cell, const glm::uvec2& e) {
-        const glm::uvec3 lo(e.x & 1023, e.x >> 10 & 1023, e.x >> 20 & 1023), hi(e.y & 1023, e.y >> 10 & 1023, e.y >> 20 & 1023);
-        ASSERT_TRUE(glm::all(glm::lessThanEqual(lo, cell)) && glm::all(glm::lessThanEqual(cell, hi)) && glm::all(glm::lessThan(hi, tops_)));
+        const glm::uvec3 lo(e.x & 1023, e.x >> 10 & 1023, e.x >> 20 & 1023),
+            hi(e.y & 1023, e.y >> 10 & 1023, e.y >> 20 & 1023);
+        ASSERT_TRUE(glm::all(glm::lessThanEqual(lo, cell)) && glm::all(glm::lessThanEqual(cell, hi)) &&
+                    glm::all(glm::lessThan(hi, tops_)));
         for (uint32_t z = lo.z; z <= hi.z; z++)
             for (uint32_t y = lo.y; y <= hi.y; y++)
                 for (uint32_t x = lo.x; x <= hi.x; x++)
-                    ASSERT_FALSE(tables_.top[(z * tops_.y + y) * tops_.x + x].x >> 31) << "an occupied cell in an empty cell's box";
+                    ASSERT_FALSE(tables_.top[(z * tops_.y + y) * tops_.x + x].x >> 31)
+                        << "an occupied cell in an empty cell's box";
     }
     /// An empty entry's box among the 64 entries from `first` of `table`.
     void check_box(const std::vector<uint32_t>& table, size_t first, uint32_t k) {
         const uint32_t box = table[first + k];
         ASSERT_LT(box, 1u << 12);
-        const glm::uvec3 cell(k % 4, k / 4 % 4, k / 16), lo(box & 3, box >> 2 & 3, box >> 4 & 3), hi(box >> 6 & 3, box >> 8 & 3, box >> 10 & 3);
+        const glm::uvec3 cell(k % 4, k / 4 % 4, k / 16), lo(box & 3, box >> 2 & 3, box >> 4 & 3),
+            hi(box >> 6 & 3, box >> 8 & 3, box >> 10 & 3);
         ASSERT_TRUE(glm::all(glm::lessThanEqual(lo, cell)) && glm::all(glm::lessThanEqual(cell, hi)));
         for (uint32_t z = lo.z; z <= hi.z; z++)
             for (uint32_t y = lo.y; y <= hi.y; y++)
-                for (uint32_t x = lo.x; x <= hi.x; x++) ASSERT_FALSE(table[first + z * 16 + y * 4 + x] >> 31) << "an occupied cell in an empty one's box";
+                for (uint32_t x = lo.x; x <= hi.x; x++)
+                    ASSERT_FALSE(table[first + z * 16 + y * 4 + x] >> 31) << "an occupied cell in an empty one's box";
     }
     void decode_nodes(const glm::uvec3& corner, uint32_t number) {
         bool occupied = false;

@@ -26,10 +26,14 @@ class RaySource {
 
     Ray make(RayKind kind) {
         switch (kind) {
-            case RayKind::uniform: return towards(inside(0.4), direction());
-            case RayKind::grazing: return grazing();
-            case RayKind::axis_parallel: return axis_parallel();
-            case RayKind::on_surface: return on_surface();
+            case RayKind::uniform:
+                return towards(inside(0.4), direction());
+            case RayKind::grazing:
+                return grazing();
+            case RayKind::axis_parallel:
+                return axis_parallel();
+            case RayKind::on_surface:
+                return on_surface();
         }
         return {};
     }
@@ -58,7 +62,8 @@ class RaySource {
         double u = unit(), v = unit();
         if (u + v > 1) u = 1 - u, v = 1 - v;
         const glm::uvec3 t = geometry_.triangles[triangle];
-        return glm::dvec3(geometry_.positions[t.x]) * (1 - u - v) + glm::dvec3(geometry_.positions[t.y]) * u + glm::dvec3(geometry_.positions[t.z]) * v;
+        return glm::dvec3(geometry_.positions[t.x]) * (1 - u - v) + glm::dvec3(geometry_.positions[t.y]) * u +
+               glm::dvec3(geometry_.positions[t.z]) * v;
     }
     Ray towards(const glm::dvec3& origin, const glm::dvec3& d) {
         // Lengths over four decades: t counts in them.

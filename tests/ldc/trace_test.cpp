@@ -22,21 +22,26 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 class TracedScene {
   public:
     TracedScene(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test)
-        : device_(device), commands_(device), builder_(device),
-          triangles_(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper), test_(test) {
+        : device_(device),
+          commands_(device),
+          builder_(device),
+          triangles_(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper),
+          test_(test) {
         builder_.build(commands_, triangles_, cube_, resolution, sampling_for(test));
     }
 
     std::vector<Hit> trace(const std::vector<Ray>& rays, bool any_hit = false, const std::vector<uint32_t>& skip = {}) {
-        Buffer ray_buffer(device_, "rays", rays.size() * sizeof(Ray)), hit_buffer(device_, "hits", rays.size() * sizeof(Hit));
+        Buffer ray_buffer(device_, "rays", rays.size() * sizeof(Ray)),
+            hit_buffer(device_, "hits", rays.size() * sizeof(Hit));
         commands_.upload(ray_buffer, std::span<const Ray>(rays));
         Buffer skip_buffer;
         if (!skip.empty()) {
             skip_buffer = Buffer(device_, "skip", skip.size() * 4);
             commands_.upload(skip_buffer, std::span<const uint32_t>(skip));
         }
-        record_trace(commands_, device_, cube_, triangles_, {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())},
-                     hit_buffer, test_, any_hit);
+        record_trace(commands_, device_, cube_, triangles_,
+                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hit_buffer, test_,
+                     any_hit);
         commands_.submit();
         return commands_.download<Hit>(hit_buffer, rays.size());
     }
@@ -51,7 +56,9 @@ class TracedScene {
     HitTest test_;
 };
 
-OracleRay oracle_ray(const Ray& ray) { return {glm::dvec3(ray.origin), ray.tmin, glm::dvec3(ray.direction), ray.tmax}; }
+OracleRay oracle_ray(const Ray& ray) {
+    return {glm::dvec3(ray.origin), ray.tmin, glm::dvec3(ray.direction), ray.tmax};
+}
 
 /// Runs `body(i)` for all i on all cores.
 template <typename Body>
@@ -89,16 +96,19 @@ class TraceTest : public DeviceTest {
                 }
                 if (oracle.check_any(oracle_ray(rays[i]), any[i].triangle != ~0u) == Verdict::wrong) wrong_any++;
             });
-            fmt::print("  {}: {} rays, {} hits, {} needed the second look\n", test::name_of(kind), rays.size(), hit_count.load(), second_look.load());
+            fmt::print("  {}: {} rays, {} hits, {} needed the second look\n", test::name_of(kind), rays.size(),
+                       hit_count.load(), second_look.load());
             EXPECT_EQ(wrong_any.load(), 0u) << test::name_of(kind);
             EXPECT_EQ(wrong.load(), 0u) << test::name_of(kind);
             EXPECT_GT(hit_count.load(), rays.size() / 50) << "rays that hit nothing prove nothing";
             if (wrong.load()) {
                 const Ray& r = rays[first];
                 const OracleHit right = oracle.closest(oracle_ray(r));
-                ADD_FAILURE() << fmt::format("ray {}: origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g}: ours t {} triangle {}, right t {} triangle {}",
-                                             first.load(), r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z,
-                                             hits[first].t, int(hits[first].triangle), right.t, int(right.triangle));
+                ADD_FAILURE() << fmt::format(
+                    "ray {}: origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g}: ours t {} triangle {}, right "
+                    "t {} triangle {}",
+                    first.load(), r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z,
+                    hits[first].t, int(hits[first].triangle), right.t, int(right.triangle));
             }
         }
     }
@@ -118,8 +128,9 @@ TEST_P(ExactOnScene, AgreesWithOracle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactOnScene,
-                         ::testing::Values("builtin:teapots", "builtin:glass", "builtin:tree", "builtin:blob:100000", "stanford-bunny.obj",
-                                           "chinesedragon.gltf", "igea.ply", "nefertiti.obj", "car2.glb"),
+                         ::testing::Values("builtin:teapots", "builtin:glass", "builtin:tree", "builtin:blob:100000",
+                                           "stanford-bunny.obj", "chinesedragon.gltf", "igea.ply", "nefertiti.obj",
+                                           "car2.glb"),
                          [](const auto& info) {
                              std::string name = info.param;
                              for (char& c : name)
@@ -135,8 +146,10 @@ TEST_F(TraceTest, ExactDoesNotDependOnResolution) {
 TEST_F(TraceTest, ExactFarFromTheWorldsOriginAndAtOddScales) {
     Geometry geometry = flatten(load_scene("builtin:blob:5000"));
     const Geometry original = geometry;
-    for (const auto& [scale, shift] : {std::pair(1e-6f, glm::vec3(0)), std::pair(1e6f, glm::vec3(0)), std::pair(1.f, glm::vec3(20, -30, 40))}) {
-        for (size_t i = 0; i < geometry.positions.size(); i++) geometry.positions[i] = original.positions[i] * scale + shift;
+    for (const auto& [scale, shift] :
+         {std::pair(1e-6f, glm::vec3(0)), std::pair(1e6f, glm::vec3(0)), std::pair(1.f, glm::vec3(20, -30, 40))}) {
+        for (size_t i = 0; i < geometry.positions.size(); i++)
+            geometry.positions[i] = original.positions[i] * scale + shift;
         geometry.lower = original.lower * scale + shift;
         geometry.upper = original.upper * scale + shift;
         compare(geometry, 128, 20'000);
@@ -236,7 +249,8 @@ TEST_F(TraceTest, BarycentricWeightsGiveTheHitPoint) {
     for (size_t i = 0; i < rays.size(); i++) {
         if (hits[i].triangle == ~0u) continue;
         const glm::uvec3 t = geometry.triangles[hits[i].triangle];
-        const glm::vec3 p = geometry.positions[t.x] * (1 - hits[i].u - hits[i].v) + geometry.positions[t.y] * hits[i].u + geometry.positions[t.z] * hits[i].v;
+        const glm::vec3 p = geometry.positions[t.x] * (1 - hits[i].u - hits[i].v) +
+                            geometry.positions[t.y] * hits[i].u + geometry.positions[t.z] * hits[i].v;
         EXPECT_LT(glm::length(p - (rays[i].origin + hits[i].t * rays[i].direction)), 2e-5f);
     }
 }
@@ -261,7 +275,8 @@ TEST_F(TraceTest, PlanarHitsAreOffByLessThanAVoxel) {
         if (right.hit()) {
             const glm::uvec3 t = geometry.triangles[right.triangle];
             const glm::dvec3 a = geometry.positions[t.x];
-            const glm::dvec3 n = glm::cross(glm::dvec3(geometry.positions[t.y]) - a, glm::dvec3(geometry.positions[t.z]) - a);
+            const glm::dvec3 n =
+                glm::cross(glm::dvec3(geometry.positions[t.y]) - a, glm::dvec3(geometry.positions[t.z]) - a);
             cosine = std::abs(glm::dot(glm::normalize(n), glm::normalize(glm::dvec3(rays[i].direction))));
         }
         if (!same && !(error * cosine <= scene.cube().grid.voxel)) off++;

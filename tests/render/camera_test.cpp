@@ -20,11 +20,15 @@ class CameraTest : public PictureTest {
             for (uint32_t x = 0; x < width; x++) {
                 const ViewRay ray = view_ray(camera, width, height, x + 0.5, y + 0.5);
                 const glm::dvec3 want = ray.at_plane(2, 0);
-                if (std::abs(want.x) > 19 || std::abs(want.y) > 19 || ray.direction.z > -0.1 || want.z > ray.origin.z) continue;
+                if (std::abs(want.x) > 19 || std::abs(want.y) > 19 || ray.direction.z > -0.1 || want.z > ray.origin.z)
+                    continue;
                 const size_t i = y * width + x;
                 const double depth = glm::length(want - ray.origin);
                 result.add(near(glm::dvec3(aovs.position[i]), want, 1e-4) && std::abs(aovs.depth[i] - depth) < 1e-4,
-                           [&] { return fmt::format("pixel {},{}: {}, expected {}", x, y, text(glm::dvec3(aovs.position[i])), text(want)); });
+                           [&] {
+                               return fmt::format("pixel {},{}: {}, expected {}", x, y,
+                                                  text(glm::dvec3(aovs.position[i])), text(want));
+                           });
             }
         result.expect(0, width * height / 2);
     }
@@ -32,8 +36,8 @@ class CameraTest : public PictureTest {
 
 TEST_F(CameraTest, PixelsHitThePointsTheyShould) {
     expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50), 64, 64);
-    expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50), 96, 40);                  // wide
-    expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50), 33, 77);                  // tall, odd
+    expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50), 96, 40);                       // wide
+    expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50), 33, 77);                       // tall, odd
     expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 50, {0.7f, -0.2f, 0.1f}), 64, 48);  // rolled
     expect_plane(perspective({0.4f, -0.3f, 3}, {1, 0.5f, 0}, 110, {0, 500, 0}), 64, 64);
     expect_plane(orthographic({2, 1, 3}, {0, 0.5f, 0}, 5), 64, 64);
@@ -76,11 +80,12 @@ TEST_F(CameraTest, FarFromTheOriginKeepsPrecision) {
 
 TEST_F(CameraTest, AuxiliaryPicturesTellWhatIsThere) {
     Stage stage;
-    stage.add(ground(5), lambert({0.2f, 0.4f, 0.6f}));                               // triangles 0, 1
-    stage.add(box({-1, 0, -1}, {1, 1, 1}), unlit({0.9f, 0.8f, 0.7f}));              // 2 to 13
-    stage.add(parallelogram({-4, 0.5f, -1}, {2, 0, 0}, {0, 0, 2}), thin_glass());    // 14, 15: its front looks down
+    stage.add(ground(5), lambert({0.2f, 0.4f, 0.6f}));                             // triangles 0, 1
+    stage.add(box({-1, 0, -1}, {1, 1, 1}), unlit({0.9f, 0.8f, 0.7f}));             // 2 to 13
+    stage.add(parallelogram({-4, 0.5f, -1}, {2, 0, 0}, {0, 0, 2}), thin_glass());  // 14, 15: its front looks down
     stage.scene.materials[2].base_color = {0.5f, 1, 1};
-    RenderSettings settings = settings_for(orthographic({0, 4, 0}, {0, 0, 0}, 12, {0, 0, -1}), 24);  // half a unit a pixel
+    RenderSettings settings =
+        settings_for(orthographic({0, 4, 0}, {0, 0, 0}, 12, {0, 0, -1}), 24);  // half a unit a pixel
     settings.aovs = true;
     const RenderResult picture = render(stage, white, settings);
     const Aovs& a = picture.aovs;
@@ -91,14 +96,16 @@ TEST_F(CameraTest, AuxiliaryPicturesTellWhatIsThere) {
         glm::dvec3 albedo;
     };
     const auto pixel = [](double x, double z) { return size_t((z + 6) * 2) * 24 + size_t((x + 6) * 2); };
-    for (const Point& p : {Point{0.25, -0.75, 3, 2, 13, 1, {0.9, 0.8, 0.7}}, Point{3.25, 4.25, 4, 0, 1, 0, {0.2, 0.4, 0.6}},
-                           Point{-3.25, 0.25, 3.5, 14, 15, 2, {0.5, 1, 1}}}) {
+    for (const Point& p :
+         {Point{0.25, -0.75, 3, 2, 13, 1, {0.9, 0.8, 0.7}}, Point{3.25, 4.25, 4, 0, 1, 0, {0.2, 0.4, 0.6}},
+          Point{-3.25, 0.25, 3.5, 14, 15, 2, {0.5, 1, 1}}}) {
         const size_t i = pixel(p.x, p.z);
         EXPECT_NEAR(a.depth[i], p.depth, 1e-5);
         EXPECT_TRUE(a.triangle[i] >= p.first && a.triangle[i] <= p.last) << a.triangle[i];
         EXPECT_EQ(a.material[i], p.material);
         EXPECT_TRUE(near(glm::dvec3(a.albedo[i]), p.albedo, 1e-6)) << text(glm::dvec3(a.albedo[i]));
-        EXPECT_TRUE(near(glm::dvec3(a.normal[i]), {0, 1, 0}, 1e-6)) << text(glm::dvec3(a.normal[i]));  // towards the viewer
+        EXPECT_TRUE(near(glm::dvec3(a.normal[i]), {0, 1, 0}, 1e-6))
+            << text(glm::dvec3(a.normal[i]));  // towards the viewer
         EXPECT_TRUE(near(glm::dvec3(a.position[i]), {p.x, 4 - p.depth, p.z}, 1e-5)) << text(glm::dvec3(a.position[i]));
         EXPECT_EQ(a.position[i].w, 1);
         EXPECT_EQ(picture.radiance[i].w, 1);
@@ -136,7 +143,8 @@ TEST_F(CameraTest, InsideAClosedRoomEveryPixelHits) {
 
 TEST_F(CameraTest, NothingInViewIsTheEnvironment) {
     const Camera camera = perspective({0, 5, 20}, {0, 5, 40}, 60);
-    const RenderResult picture = render(still_life(glm::vec3(0)), color_environment({0.1f, 0.2f, 0.3f}), settings_for(camera, 16));
+    const RenderResult picture =
+        render(still_life(glm::vec3(0)), color_environment({0.1f, 0.2f, 0.3f}), settings_for(camera, 16));
     tally(picture, camera, 1e-6, [](const ViewRay&) { return glm::dvec3(0.1f, 0.2f, 0.3f); }).expect(0, 256);
     for (const auto& p : picture.radiance) EXPECT_EQ(p.w, 0);
     EXPECT_EQ(picture.stats.rays.secondary(), 0u);
@@ -166,7 +174,11 @@ TEST_F(CameraTest, BandsFitTogether) {
     for (size_t i = 0; i < part.radiance.size(); i++)
         result.add(near(glm::dvec3(part.radiance[i]), glm::dvec3(whole.radiance[i + shift]), 2e-3) &&
                        part.aovs.triangle[i] == whole.aovs.triangle[i + shift],
-                   [&] { return fmt::format("pixel {},{}: {} and {}", i % width, i / width, text(glm::dvec3(part.radiance[i])), text(glm::dvec3(whole.radiance[i + shift]))); });
+                   [&] {
+                       return fmt::format("pixel {},{}: {} and {}", i % width, i / width,
+                                          text(glm::dvec3(part.radiance[i])),
+                                          text(glm::dvec3(whole.radiance[i + shift])));
+                   });
     result.expect(0.002, part.radiance.size());
 }
 
@@ -188,7 +200,8 @@ TEST_F(CameraTest, TheSamePictureTwice) {
     const Environment sky = sky_environment(default_sun_direction());
     const Geometry geometry = flatten(stage.scene);
     Renderer renderer(device(), stage.scene, geometry, sky);
-    const RenderResult first = renderer.render(settings), again = renderer.render(settings), fresh = render(stage, sky, settings);
+    const RenderResult first = renderer.render(settings), again = renderer.render(settings),
+                       fresh = render(stage, sky, settings);
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);
     EXPECT_EQ(first.encoded, again.encoded);
@@ -221,7 +234,8 @@ TEST_F(CameraTest, SamplesAverageTheEdge) {
                 coverage += std::clamp((x + 1) - (edge + 1) * 8, 0.0, 1.0) / 64;
             }
             const glm::dvec3 got = radiance_at(picture, x, y);
-            result.add(near(got, glm::dvec3(coverage), 0.03), [&] { return fmt::format("pixel {},{}: {:.4f}, expected {:.4f}", x, y, got.x, coverage); });
+            result.add(near(got, glm::dvec3(coverage), 0.03),
+                       [&] { return fmt::format("pixel {},{}: {:.4f}, expected {:.4f}", x, y, got.x, coverage); });
         }
     result.expect(0, 256);
     EXPECT_EQ(picture.stats.rays.primary, 256u * 128u);

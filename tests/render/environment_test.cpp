@@ -13,28 +13,34 @@ Stage empty_stage() {
 
 /// Every direction's light tells the direction. By the documented convention: the centre looks along -z, +x is to the
 /// right of it, +y at the top.
-glm::dvec3 light_of(const glm::dvec3& d) { return 0.5 + 0.4 * d; }
+glm::dvec3 light_of(const glm::dvec3& d) {
+    return 0.5 + 0.4 * d;
+}
 Environment direction_image(uint32_t width) {
     std::vector<glm::vec4> pixels;
     for (uint32_t y = 0; y < width / 2; y++)
         for (uint32_t x = 0; x < width; x++) {
             const double phi = ((x + 0.5) / width - 0.5) * 2 * kPi, theta = (y + 0.5) / (width / 2) * kPi;
-            pixels.push_back(glm::vec4(glm::vec3(light_of({std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)})), 1));
+            pixels.push_back(glm::vec4(glm::vec3(light_of({std::sin(theta) * std::sin(phi), std::cos(theta),
+                                                           -std::sin(theta) * std::cos(phi)})),
+                                       1));
         }
     return image_environment(width, width / 2, pixels);
 }
 
 using EnvironmentTest = PictureTest;
 
-const std::pair<glm::vec3, glm::vec3> kViews[] = {{{0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}},  {{0, 0, 1}, {0, 1, 0}},
-                                                  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}}, {{0, -1, 0}, {0, 0, -1}}};
+const std::pair<glm::vec3, glm::vec3> kViews[] = {{{0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}},
+                                                  {{0, 0, 1}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}},
+                                                  {{0, 1, 0}, {0, 0, 1}},  {{0, -1, 0}, {0, 0, -1}}};
 
 TEST_F(EnvironmentTest, ImageIsOriented) {
     const Environment image = direction_image(256);
     for (const auto& [direction, up] : kViews) {
         const Camera camera = perspective({0, 0, 0}, direction, 90, up);
-        tally(render(empty_stage(), image, settings_for(camera, 32)), camera, 0.01, [](const ViewRay& ray) { return light_of(ray.direction); })
-            .expect(0, 1024);
+        tally(render(empty_stage(), image, settings_for(camera, 32)), camera, 0.01, [](const ViewRay& ray) {
+            return light_of(ray.direction);
+        }).expect(0, 1024);
     }
 }
 
@@ -59,10 +65,12 @@ TEST_F(EnvironmentTest, SeamIsInterpolated) {
     const Camera camera = perspective({0, 0, 0}, {0, 0, 1}, 40);
     tally(render(empty_stage(), image_environment(8, 4, pixels), settings_for(camera, 64)), camera, 2e-3,
           [](const ViewRay& ray) -> std::optional<glm::dvec3> {
-              const double degrees = std::atan2(-ray.direction.x, ray.direction.z) * 180 / kPi;  // 0 at the seam, rising with the columns
+              const double degrees =
+                  std::atan2(-ray.direction.x, ray.direction.z) * 180 / kPi;  // 0 at the seam, rising with the columns
               if (std::abs(degrees) > 22) return {};
               return glm::dvec3(0.5 + degrees / 45);
-          }).expect(0, 3800);
+          })
+        .expect(0, 3800);
 }
 
 TEST_F(EnvironmentTest, DiffuseLightComesFromTheRightSide) {
@@ -77,7 +85,8 @@ TEST_F(EnvironmentTest, DiffuseLightComesFromTheRightSide) {
         Tally result;
         for (size_t i = 0; i < picture.radiance.size(); i++) {
             if (picture.aovs.triangle[i] < 0) continue;
-            const glm::dvec3 want = 0.5 + 0.4 * 2 / 3 * glm::dvec3(picture.aovs.normal[i]), got = glm::dvec3(picture.radiance[i]);
+            const glm::dvec3 want = 0.5 + 0.4 * 2 / 3 * glm::dvec3(picture.aovs.normal[i]),
+                             got = glm::dvec3(picture.radiance[i]);
             result.add(near(got, want, 0.01), [&] { return text(got) + ", expected " + text(want); });
         }
         result.expect(0, 500);
@@ -87,7 +96,8 @@ TEST_F(EnvironmentTest, DiffuseLightComesFromTheRightSide) {
 TEST_F(EnvironmentTest, ColorIsTheSameEverywhere) {
     const Camera camera = perspective({0, 0, 0}, {1, 2, 3}, 120);
     tally(render(empty_stage(), color_environment({0.25f, 3, 0}), settings_for(camera, 32)), camera, 1e-5,
-          [](const ViewRay&) { return glm::dvec3(0.25, 3, 0); }).expect(0, 1024);
+          [](const ViewRay&) { return glm::dvec3(0.25, 3, 0); })
+        .expect(0, 1024);
 }
 
 const glm::vec3 kSun = glm::normalize(glm::vec3(0.5f, 0.6f, -0.4f));
@@ -130,7 +140,8 @@ TEST_F(EnvironmentTest, SunlightComesFromTheDisc) {
     const glm::dvec3 dark = radiance_at(render(stage, sky, settings), 16, 16);
     settings.shadow = false;
     const glm::dvec3 bright = radiance_at(render(stage, sky, settings), 16, 16);
-    EXPECT_TRUE(near(bright - dark, glm::dvec3(sky.lights[0].color) * double(kSun.y) / kPi, 0.01)) << text(bright - dark);
+    EXPECT_TRUE(near(bright - dark, glm::dvec3(sky.lights[0].color) * double(kSun.y) / kPi, 0.01))
+        << text(bright - dark);
     // The disc's solid angle and radiance are that irradiance.
     const double solid_angle = 2 * kPi * (1 - double(sky.sun_cosine));
     EXPECT_NEAR(sky.sun_radiance.x * solid_angle, sky.lights[0].color.x, 0.02);

@@ -17,14 +17,17 @@ class FurnaceTest : public PictureTest {
                 const glm::dvec3 got = radiance_at(picture, x, y);
                 bool right = true;
                 for (int c = 0; c < 3; c++) right &= got[c] >= low && got[c] <= high;
-                if (picture.radiance[y * picture.width + x].w > 0) result.add(right, [&] { return fmt::format("pixel {},{}: {}", x, y, text(got)); });
+                if (picture.radiance[y * picture.width + x].w > 0)
+                    result.add(right, [&] { return fmt::format("pixel {},{}: {}", x, y, text(got)); });
             }
         return result;
     }
     const RenderSettings settings_ = settings_for(perspective({0.5f, 0.7f, 3}, {0, 0, 0}, 45), 96);
 };
 
-TEST_F(FurnaceTest, WhiteDiffuseBallStaysWhite) { ball(lambert({1, 1, 1}), 0.99, 1.01, settings_).expect(0, 4000); }
+TEST_F(FurnaceTest, WhiteDiffuseBallStaysWhite) {
+    ball(lambert({1, 1, 1}), 0.99, 1.01, settings_).expect(0, 4000);
+}
 
 TEST_F(FurnaceTest, NoDielectricGainsLight) {
     for (float roughness : {0.f, 0.1f, 0.3f, 0.6f, 1.f}) {
@@ -35,7 +38,9 @@ TEST_F(FurnaceTest, NoDielectricGainsLight) {
     }
 }
 
-TEST_F(FurnaceTest, MirrorBallIsInvisible) { ball(plane_mirror(), 0.999, 1.001, settings_).expect(0, 4000); }
+TEST_F(FurnaceTest, MirrorBallIsInvisible) {
+    ball(plane_mirror(), 0.999, 1.001, settings_).expect(0, 4000);
+}
 
 TEST_F(FurnaceTest, ClearGlassBallIsInvisible) {
     RenderSettings settings = settings_;
@@ -45,7 +50,9 @@ TEST_F(FurnaceTest, ClearGlassBallIsInvisible) {
     }
 }
 
-TEST_F(FurnaceTest, ThinGlassBallIsInvisible) { ball(thin_glass(), 0.98, 1.001, settings_).expect(0, 4000); }
+TEST_F(FurnaceTest, ThinGlassBallIsInvisible) {
+    ball(thin_glass(), 0.98, 1.001, settings_).expect(0, 4000);
+}
 
 TEST_F(FurnaceTest, RoughMetalIsNeitherBlackNorBright) {
     for (float roughness : {0.2f, 0.5f, 1.f}) {
@@ -64,7 +71,8 @@ TEST_F(FurnaceTest, RoughMetalIsNeitherBlackNorBright) {
     }
 }
 
-/// Share of white light that a GGX metal of reflectance 1 reflects towards a direction, by quadrature over its microfacets.
+/// Share of white light that a GGX metal of reflectance 1 reflects towards a direction, by quadrature over its
+/// microfacets.
 double ggx_albedo(double cosine, double alpha) {
     const auto masking = [&](double c) { return 2 * c / (c + std::sqrt(alpha * alpha + (1 - alpha * alpha) * c * c)); };
     const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine);
@@ -72,7 +80,8 @@ double ggx_albedo(double cosine, double alpha) {
     const int n = 200;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) {
-            const double theta = (i + 0.5) / n * kPi / 2, phi = (j + 0.5) / n * 2 * kPi, c = std::cos(theta), k = c * c * (alpha * alpha - 1) + 1;
+            const double theta = (i + 0.5) / n * kPi / 2, phi = (j + 0.5) / n * 2 * kPi, c = std::cos(theta),
+                         k = c * c * (alpha * alpha - 1) + 1;
             const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), c);
             const double v_h = glm::dot(view, h), n_l = 2 * v_h * c - cosine;
             if (v_h <= 0 || n_l <= 0) continue;
@@ -103,7 +112,9 @@ TEST_F(FurnaceTest, EmissionIsShownExactly) {
     lamp.emissive = {7, 0.25f, 1000};
     stage.add(ground(3), lamp);
     const Camera camera = from_above(2);
-    tally(render(stage, black, settings_for(camera, 16)), camera, 1e-4, [](const ViewRay&) { return glm::dvec3(7, 0.25, 1000); }).expect(0, 256);
+    tally(render(stage, black, settings_for(camera, 16)), camera, 1e-4, [](const ViewRay&) {
+        return glm::dvec3(7, 0.25, 1000);
+    }).expect(0, 256);
 }
 
 TEST_F(FurnaceTest, UnlitIgnoresAllLight) {
@@ -111,7 +122,9 @@ TEST_F(FurnaceTest, UnlitIgnoresAllLight) {
     stage.add(ground(3), unlit({0.3f, 0.6f, 2}));
     stage.sun({0, -1, 0}, {9, 9, 9});
     const Camera camera = from_above(2);
-    tally(render(stage, white, settings_for(camera, 16)), camera, 1e-6, [](const ViewRay&) { return glm::dvec3(0.3f, 0.6f, 2); }).expect(0, 256);
+    tally(render(stage, white, settings_for(camera, 16)), camera, 1e-6, [](const ViewRay&) {
+        return glm::dvec3(0.3f, 0.6f, 2);
+    }).expect(0, 256);
 }
 
 TEST_F(FurnaceTest, AmbientRaysKnowAPit) {
@@ -135,7 +148,8 @@ TEST_F(FurnaceTest, AmbientRaysKnowAPit) {
         double sum = 0, count = 0;
         for (uint32_t y = 0; y < 40; y++)
             for (uint32_t x = 0; x < 40; x++)
-                if (where(std::hypot((x + 0.5) * 0.1 - 2, (y + 0.5) * 0.1 - 2))) sum += radiance_at(picture, x, y).y, count++;
+                if (where(std::hypot((x + 0.5) * 0.1 - 2, (y + 0.5) * 0.1 - 2)))
+                    sum += radiance_at(picture, x, y).y, count++;
         return sum / count;
     };
     const auto middle = [](double r) { return r < 0.15; };

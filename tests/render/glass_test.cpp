@@ -7,18 +7,23 @@ namespace {
 using GlassTest = PictureTest;
 
 /// The background's light: a gradient, so that a shifted ray sees another value.
-glm::dvec3 backdrop_light(const glm::dvec3& p) { return {1 + 0.2 * p.x, 1 - 0.2 * p.y, 1 + 0.1 * (p.x + p.y)}; }
-
-void add_backdrop(Stage& stage) {
-    stage.add(gradient_quad({-4.5f, -4.5f, -2}, {9, 0, 0}, {0, 9, 0}, [](glm::vec3 p) { return glm::vec3(backdrop_light(p)); }), unlit({1, 1, 1}));
+glm::dvec3 backdrop_light(const glm::dvec3& p) {
+    return {1 + 0.2 * p.x, 1 - 0.2 * p.y, 1 + 0.1 * (p.x + p.y)};
 }
 
-/// What a ray towards -z sees through slabs that are normal to z, each {front, back}, by Snell's law; no inner reflections.
+void add_backdrop(Stage& stage) {
+    stage.add(gradient_quad({-4.5f, -4.5f, -2}, {9, 0, 0}, {0, 9, 0},
+                            [](glm::vec3 p) { return glm::vec3(backdrop_light(p)); }),
+              unlit({1, 1, 1}));
+}
+
+/// What a ray towards -z sees through slabs that are normal to z, each {front, back}, by Snell's law; no inner
+/// reflections.
 struct SlabPath {
-    glm::dvec3 end;           ///< on the background at z = -2
-    double inside = 0;        ///< length inside glass
-    double transmitted = 1;   ///< by all faces
-    double reflected = 0;     ///< by one face
+    glm::dvec3 end;          ///< on the background at z = -2
+    double inside = 0;       ///< length inside glass
+    double transmitted = 1;  ///< by all faces
+    double reflected = 0;    ///< by one face
 };
 SlabPath through_slabs(const ViewRay& ray, const std::vector<glm::dvec2>& slabs, double ior) {
     const double cosine = -ray.direction.z, sine = std::sqrt(1 - cosine * cosine);
@@ -36,25 +41,34 @@ SlabPath through_slabs(const ViewRay& ray, const std::vector<glm::dvec2>& slabs,
     path.end += ray.direction * ((-2 - path.end.z) / ray.direction.z);
     return path;
 }
-bool off_backdrop(const SlabPath& path) { return std::abs(path.end.x) > 4.3 || std::abs(path.end.y) > 4.3; }
+bool off_backdrop(const SlabPath& path) {
+    return std::abs(path.end.x) > 4.3 || std::abs(path.end.y) > 4.3;
+}
 
 /// Compares from both sides: light that was reflected inside the glass may only add, and only its bound.
-Tally tally_slabs(const RenderResult& picture, const Camera& camera, const std::vector<glm::dvec2>& slabs, const glm::dvec3& absorption, double pairs) {
+Tally tally_slabs(const RenderResult& picture, const Camera& camera, const std::vector<glm::dvec2>& slabs,
+                  const glm::dvec3& absorption, double pairs) {
     Tally result;
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
-            const SlabPath path = through_slabs(view_ray(camera, picture.width, picture.height, x + 0.5, y + 0.5), slabs, 1.5);
+            const SlabPath path =
+                through_slabs(view_ray(camera, picture.width, picture.height, x + 0.5, y + 0.5), slabs, 1.5);
             if (off_backdrop(path)) continue;
-            const glm::dvec3 want = backdrop_light(path.end) * path.transmitted * glm::exp(-absorption * path.inside), got = radiance_at(picture, x, y);
+            const glm::dvec3 want = backdrop_light(path.end) * path.transmitted * glm::exp(-absorption * path.inside),
+                             got = radiance_at(picture, x, y);
             const double more = pairs * path.reflected * path.reflected * 2;
             bool right = true;
             for (int c = 0; c < 3; c++) right &= got[c] >= want[c] - 1e-3 && got[c] <= want[c] + more + 1e-3;
-            result.add(right, [&] { return fmt::format("pixel {},{}: {}, expected {} to {:.5f} more", x, y, text(got), text(want), more); });
+            result.add(right, [&] {
+                return fmt::format("pixel {},{}: {}, expected {} to {:.5f} more", x, y, text(got), text(want), more);
+            });
         }
     return result;
 }
 
-Primitive slab(float front, float back) { return box({-4, -4, back}, {4, 4, front}); }
+Primitive slab(float front, float back) {
+    return box({-4, -4, back}, {4, 4, front});
+}
 
 TEST_F(GlassTest, SlabShiftsTheBackgroundBySnellsLaw) {
     Stage stage;
@@ -73,12 +87,14 @@ TEST_F(GlassTest, ThinWallDoesNotShift) {
     add_backdrop(stage);
     stage.add(parallelogram({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}), thin_glass());
     const Camera camera = perspective({1.6f, 0.9f, 2}, {0.5f, 0.2f, 0}, 50);
-    tally(render(stage, black, settings_for(camera)), camera, 1e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        const glm::dvec3 end = ray.at_plane(2, -2);
-        if (std::abs(end.x) > 4.3 || std::abs(end.y) > 4.3) return {};
-        const double r = fresnel(-ray.direction.z, 1, 1.5);
-        return backdrop_light(end) * (1 - 2 * r / (1 + r));  // all inner reflections of both faces summed up
-    }).expect(0, 3500);
+    tally(render(stage, black, settings_for(camera)), camera, 1e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const glm::dvec3 end = ray.at_plane(2, -2);
+              if (std::abs(end.x) > 4.3 || std::abs(end.y) > 4.3) return {};
+              const double r = fresnel(-ray.direction.z, 1, 1.5);
+              return backdrop_light(end) * (1 - 2 * r / (1 + r));  // all inner reflections of both faces summed up
+          })
+        .expect(0, 3500);
 }
 
 TEST_F(GlassTest, AbsorptionFollowsBeerAndLambert) {
@@ -92,7 +108,8 @@ TEST_F(GlassTest, AbsorptionFollowsBeerAndLambert) {
         Stage stage;
         add_backdrop(stage);
         stage.add(slab(0.2f, 0.2f - thickness), tinted);
-        tally_slabs(render(stage, black, settings_for(camera)), camera, {{0.2f, 0.2f - thickness}}, absorption, 1).expect(0, 3000);
+        tally_slabs(render(stage, black, settings_for(camera)), camera, {{0.2f, 0.2f - thickness}}, absorption, 1)
+            .expect(0, 3000);
     }
 }
 
@@ -105,13 +122,17 @@ TEST_F(GlassTest, PrismReflectsTotally) {
                      {{-1, -1, 1}, {-1, 1, 1}, {-1, -1, -1}}}),
               clear_glass());
     const auto light = [](const glm::dvec3& p) { return glm::dvec3(1 + 0.3 * p.x, 1 + 0.3 * p.z, 1); };
-    stage.add(gradient_quad({-3, -2, 3}, {6, 0, 0}, {0, 0, -6}, [&](glm::vec3 p) { return glm::vec3(light(p)); }), unlit({1, 1, 1}));
-    stage.add(parallelogram({-3, -3, -3}, {6, 0, 0}, {0, 6, 0}), unlit({0, 9, 0}));  // seen if the slanted face let light through
+    stage.add(gradient_quad({-3, -2, 3}, {6, 0, 0}, {0, 0, -6}, [&](glm::vec3 p) { return glm::vec3(light(p)); }),
+              unlit({1, 1, 1}));
+    stage.add(parallelogram({-3, -3, -3}, {6, 0, 0}, {0, 6, 0}),
+              unlit({0, 9, 0}));  // seen if the slanted face let light through
     const Camera camera = orthographic({0.013f, 0.007f, 5}, {0.013f, 0.007f, 0}, 1.6f);
-    tally(render(stage, black, settings_for(camera)), camera, 4e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        // In at right angles, down at the slanted face y = z, out at right angles.
-        return 0.96 * 0.96 * light({ray.origin.x, -2, ray.origin.y});
-    }).expect(0.001, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 4e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              // In at right angles, down at the slanted face y = z, out at right angles.
+              return 0.96 * 0.96 * light({ray.origin.x, -2, ray.origin.y});
+          })
+        .expect(0.001, 4096);
 }
 
 TEST_F(GlassTest, GlassBehindGlassIsThere) {
@@ -152,7 +173,9 @@ TEST_F(GlassTest, ShadowOfGlassLetsLightThrough) {
     stage.add(box({-0.1f, 1, -2}, {6, 1.4f, 2}), tinted);
     stage.sun({0, -1, 0}, {3, 3, 3});
     const glm::dvec3 want = 3 / kPi * 0.96 * 0.96 * glm::dvec3(0.3, 0.6, 0.9);
-    tally(render(stage, black, settings_for(camera)), camera, 2e-3, [&](const ViewRay&) { return want; }).expect(0, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 2e-3, [&](const ViewRay&) {
+        return want;
+    }).expect(0, 4096);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ Texture letter() {
     return t;
 }
 
-/// A world at z > 0 in front of the mirror plane z = 0, all of it beside or behind the camera; `other`: its mirror image.
+/// A world at z > 0 in front of the mirror plane z = 0, all of it beside or behind the camera; `other`: its mirror
+/// image.
 Stage world(bool other) {
     Stage stage;
     const auto add = [&](Primitive shape, const Material& m) { stage.add(other ? mirrored(shape) : shape, m); };
@@ -78,12 +79,14 @@ TEST_F(MirrorTest, TintFollowsSchlick) {
     Stage stage;
     stage.add(kMirror, plane_mirror({0.9f, 0.5f, 0.2f}));
     const Camera camera = perspective({0, 0, 1}, {0.8f, 0.3f, 0}, 90);
-    tally(render(stage, white, settings_for(camera)), camera, 1e-4, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        const glm::dvec3 p = ray.at_plane(2, 0);
-        if (ray.direction.z >= -1e-3 || std::abs(p.x) > 3.9 || std::abs(p.y) > 3.9) return {};
-        const glm::dvec3 f0(0.9, 0.5, 0.2);
-        return f0 + (1.0 - f0) * std::pow(1 + ray.direction.z, 5);
-    }).expect(0, 3000);
+    tally(render(stage, white, settings_for(camera)), camera, 1e-4,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const glm::dvec3 p = ray.at_plane(2, 0);
+              if (ray.direction.z >= -1e-3 || std::abs(p.x) > 3.9 || std::abs(p.y) > 3.9) return {};
+              const glm::dvec3 f0(0.9, 0.5, 0.2);
+              return f0 + (1.0 - f0) * std::pow(1 + ray.direction.z, 5);
+          })
+        .expect(0, 3000);
 }
 
 /// Two mirrors at z = ±1 that face each other.
@@ -121,7 +124,8 @@ TEST_F(MirrorTest, EveryReflectionTints) {
     const RenderResult picture = render(hall(glm::vec3(0.5f)), white, settings);
     tally(picture, camera, 1e-4, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
         // Unfolded: the ray passes a mirror at |z| = 1, 3, 5 … as long as it stays inside |x| < 9, |y| < 3.
-        const double reach = std::min(9 / std::abs(ray.direction.x), 3 / std::abs(ray.direction.y)) * std::abs(ray.direction.z);
+        const double reach =
+            std::min(9 / std::abs(ray.direction.x), 3 / std::abs(ray.direction.y)) * std::abs(ray.direction.z);
         const double passed = (reach + 1) / 2, tint = 0.5 + 0.5 * std::pow(1 - std::abs(ray.direction.z), 5);
         if (std::abs(passed - std::round(passed)) < 1e-3) return {};
         return glm::dvec3(std::pow(tint, std::min(std::floor(passed), 7.0)));

@@ -59,7 +59,9 @@ inline Material lambert(const glm::vec3& color) {
     m.ior = 1;
     return m;
 }
-inline Material plane_mirror(const glm::vec3& tint = glm::vec3(1)) { return metal("mirror", tint); }
+inline Material plane_mirror(const glm::vec3& tint = glm::vec3(1)) {
+    return metal("mirror", tint);
+}
 inline Material clear_glass(float ior = 1.5f) {
     Material m;
     m.roughness = 0;
@@ -100,10 +102,13 @@ inline Primitive disc(const glm::vec3& centre, float radius, uint32_t corners = 
 }
 
 /// The square |x|, |z| ≤ half at height y, facing up.
-inline Primitive ground(float half, float y = 0) { return parallelogram({-half, y, half}, {2 * half, 0, 0}, {0, 0, -2 * half}); }
+inline Primitive ground(float half, float y = 0) {
+    return parallelogram({-half, y, half}, {2 * half, 0, 0}, {0, 0, -2 * half});
+}
 
 /// Adds an unlit quad corner, u, v whose colour at p is c0 + dot(p, gradient) in every channel's own gradient.
-inline Primitive gradient_quad(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, const std::function<glm::vec3(glm::vec3)>& color) {
+inline Primitive gradient_quad(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
+                               const std::function<glm::vec3(glm::vec3)>& color) {
     Primitive quad = parallelogram(corner, u, v);
     for (const glm::vec3& p : quad.positions) quad.colors.push_back(glm::vec4(color(p), 1));
     return quad;
@@ -132,16 +137,21 @@ inline Camera orthographic(const glm::vec3& eye, const glm::vec3& look, float he
     return c;
 }
 /// Sees `height` of the world around the origin from above; the picture's top is -z, its right +x.
-inline Camera from_above(float height) { return orthographic({0, 8, 0}, {0, 0, 0}, height, {0, 0, -1}); }
+inline Camera from_above(float height) {
+    return orthographic({0, 8, 0}, {0, 0, 0}, height, {0, 0, -1});
+}
 
 struct ViewRay {
     glm::dvec3 origin, direction;
-    glm::dvec3 at_plane(int axis, double value) const { return origin + direction * ((value - origin[axis]) / direction[axis]); }
+    glm::dvec3 at_plane(int axis, double value) const {
+        return origin + direction * ((value - origin[axis]) / direction[axis]);
+    }
 };
 /// The ray through picture position (x, y), pixels from the top left, in double and by the textbook.
 inline ViewRay view_ray(const Camera& camera, uint32_t width, uint32_t height, double x, double y) {
     const glm::dvec3 eye = camera.eye, forward = glm::normalize(glm::dvec3(camera.look) - eye);
-    const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up))), up = glm::cross(right, forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up))),
+                     up = glm::cross(right, forward);
     const bool flat = camera.orthographic_height > 0;
     const double half = flat ? camera.orthographic_height / 2 : std::tan(double(camera.vertical_fov) / 2);
     const double sx = (2 * x / width - 1) * half * width / height, sy = (1 - 2 * y / height) * half;
@@ -162,7 +172,9 @@ inline double fresnel(double cosine, double from, double to) {
 
 // --- Comparison ---
 
-inline std::string text(const glm::dvec3& v) { return fmt::format("({:.5f}, {:.5f}, {:.5f})", v.x, v.y, v.z); }
+inline std::string text(const glm::dvec3& v) {
+    return fmt::format("({:.5f}, {:.5f}, {:.5f})", v.x, v.y, v.z);
+}
 
 /// Expects `of` compared pixels with at most `failing` of them wrong; the first few wrong ones are told.
 struct Tally {
@@ -175,7 +187,8 @@ struct Tally {
     }
     void expect(double permitted_fraction, size_t at_least) const {
         EXPECT_GE(compared, at_least) << "too few pixels could be compared";
-        EXPECT_LE(double(wrong), permitted_fraction * double(compared)) << wrong << " of " << compared << " pixels are wrong:" << examples;
+        EXPECT_LE(double(wrong), permitted_fraction * double(compared))
+            << wrong << " of " << compared << " pixels are wrong:" << examples;
     }
 };
 
@@ -195,7 +208,8 @@ inline Tally tally(const RenderResult& picture, const Camera& camera, double tol
             const auto want = expected(view_ray(camera, picture.width, picture.height, x + 0.5, y + 0.5));
             if (!want) continue;
             const glm::dvec3 got = radiance_at(picture, x, y);
-            result.add(near(got, *want, tolerance), [&] { return fmt::format("pixel {},{}: {}, expected {}", x, y, text(got), text(*want)); });
+            result.add(near(got, *want, tolerance),
+                       [&] { return fmt::format("pixel {},{}: {}, expected {}", x, y, text(got), text(*want)); });
         }
     return result;
 }
@@ -204,8 +218,10 @@ inline Tally tally(const RenderResult& a, const RenderResult& b, double toleranc
     Tally result;
     for (uint32_t y = 0; y < a.height; y++)
         for (uint32_t x = 0; x < a.width; x++)
-            result.add(near(radiance_at(a, x, y), radiance_at(b, x, y), tolerance),
-                       [&] { return fmt::format("pixel {},{}: {} and {}", x, y, text(radiance_at(a, x, y)), text(radiance_at(b, x, y))); });
+            result.add(near(radiance_at(a, x, y), radiance_at(b, x, y), tolerance), [&] {
+                return fmt::format("pixel {},{}: {} and {}", x, y, text(radiance_at(a, x, y)),
+                                   text(radiance_at(b, x, y)));
+            });
     return result;
 }
 

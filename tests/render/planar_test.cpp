@@ -19,12 +19,15 @@ TEST_F(PlanarTest, MirrorPictureHasFewWrongPixels) {
     Stage stage;
     stage.add(sphere({0.8f, 0.6f, 1.9f}, 0.5f, 24), lambert({0.9f, 0.5f, 0.2f}));
     stage.add(box({-1.5f, 0, 1}, {-0.9f, 1.1f, 1.6f}), unlit({0.2f, 0.8f, 0.1f}));
-    stage.add(gradient_quad({3, -1, 4}, {-6, 0, 0}, {0, 4, 0}, [](glm::vec3 p) { return glm::vec3(0.5f + 0.1f * p.x, 0.4f + 0.1f * p.y, 0.3f); }), unlit({1, 1, 1}));
+    stage.add(gradient_quad({3, -1, 4}, {-6, 0, 0}, {0, 4, 0},
+                            [](glm::vec3 p) { return glm::vec3(0.5f + 0.1f * p.x, 0.4f + 0.1f * p.y, 0.3f); }),
+              unlit({1, 1, 1}));
     stage.add(parallelogram({-3, 0, 4}, {6, 0, 0}, {0, 0, -3.7f}), lambert({0.8f, 0.8f, 0.8f}));
     stage.add(parallelogram({-3, -1, 0}, {6, 0, 0}, {0, 4, 0}), plane_mirror());
     stage.lamp({1.5f, 2.5f, 1.5f}, {10, 10, 10});
     const Camera camera = perspective({0.2f, 0.8f, 0.95f}, {0, 0.7f, 0}, 75);
-    const RenderResult exact = render(stage, white, with(camera, HitTest::exact)), planar = render(stage, white, with(camera, HitTest::planar));
+    const RenderResult exact = render(stage, white, with(camera, HitTest::exact)),
+                       planar = render(stage, white, with(camera, HitTest::planar));
     EXPECT_EQ(planar.stats.hit, HitTest::planar);
     tally(exact, planar, 0.03).expect(0.02, 128 * 128);
 }
@@ -43,10 +46,12 @@ TEST_F(PlanarTest, NoAcneOnACurvedMirror) {
         for (uint32_t x = 0; x < 128; x++) {
             const size_t i = y * 128 + x;
             if (picture.aovs.triangle[i] < 0) continue;
-            const double cosine = -glm::dot(view_ray(camera, 128, 128, x + 0.5, y + 0.5).direction, glm::dvec3(picture.aovs.normal[i]));
+            const double cosine =
+                -glm::dot(view_ray(camera, 128, 128, x + 0.5, y + 0.5).direction, glm::dvec3(picture.aovs.normal[i]));
             const double want = 0.5 + 0.5 * std::pow(1 - cosine, 5);
             const glm::dvec3 got = radiance_at(picture, x, y);
-            result.add(near(got, glm::dvec3(want), 0.01), [&] { return fmt::format("pixel {},{}: {:.4f}, expected {:.4f}", x, y, got.x, want); });
+            result.add(near(got, glm::dvec3(want), 0.01),
+                       [&] { return fmt::format("pixel {},{}: {:.4f}, expected {:.4f}", x, y, got.x, want); });
         }
     result.expect(0.005, 5000);
 }
@@ -57,14 +62,17 @@ TEST_F(PlanarTest, NoAcneInLampLight) {
     stage.add(ground(3), lambert({1, 1, 1}));
     stage.sun({-0.5f, -1, -0.4f}, {3, 3, 3});
     const Camera camera = perspective({1.5f, 3, 4}, {0, 0.7f, 0}, 50);
-    tally(render(stage, black, with(camera, HitTest::exact)), render(stage, black, with(camera, HitTest::planar)), 0.02).expect(0.02, 128 * 128);
+    tally(render(stage, black, with(camera, HitTest::exact)), render(stage, black, with(camera, HitTest::planar)), 0.02)
+        .expect(0.02, 128 * 128);
 }
 
 TEST_F(PlanarTest, ColouredGlassTintsItsShadow) {
     // A pane whose tint changes from corner to corner, straight above the floor.
     Stage stage;
     stage.add(ground(2), lambert({1, 1, 1}));
-    stage.add(gradient_quad({-2, 1, 2}, {4, 0, 0}, {0, 0, -4}, [](glm::vec3 p) { return glm::vec3((p.x + 2) / 4, (p.z + 2) / 4, 1); }), thin_glass());
+    stage.add(gradient_quad({-2, 1, 2}, {4, 0, 0}, {0, 0, -4},
+                            [](glm::vec3 p) { return glm::vec3((p.x + 2) / 4, (p.z + 2) / 4, 1); }),
+              thin_glass());
     stage.sun({0, -1, 0}, glm::vec3(kPi));
     RenderSettings settings = with(orthographic({0, 0.9f, 0}, {0, 0, 0}, 3.5f, {0, 0, -1}), HitTest::planar);
     settings.width = settings.height = 32;

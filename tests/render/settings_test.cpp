@@ -6,7 +6,9 @@ namespace {
 
 using SettingsTest = PictureTest;
 
-glm::dvec3 aces(glm::dvec3 c) { return glm::clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0); }
+glm::dvec3 aces(glm::dvec3 c) {
+    return glm::clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
+}
 /// The Khronos PBR neutral tone mapper, from its specification.
 glm::dvec3 neutral(glm::dvec3 c) {
     const double low = std::min({c.x, c.y, c.z});
@@ -22,14 +24,16 @@ double encode(double v) {
 }
 
 /// A row of known radiances, one a pixel.
-const std::vector<glm::vec3> kRow = {{0, 0, 0},       {0.001f, 0.002f, 0.003f}, {0.02f, 0.05f, 0.1f}, {0.2159f, 0.5f, 1},
-                                     {0.18f, 0.18f, 0.18f}, {0.8f, 0.1f, 0.01f}, {2, 0.5f, 0.1f},      {30, 20, 10}};
+const std::vector<glm::vec3> kRow = {
+    {0, 0, 0},           {0.001f, 0.002f, 0.003f}, {0.02f, 0.05f, 0.1f}, {0.2159f, 0.5f, 1}, {0.18f, 0.18f, 0.18f},
+    {0.8f, 0.1f, 0.01f}, {2, 0.5f, 0.1f},          {30, 20, 10}};
 
 class EncodingTest : public PictureTest {
   protected:
     RenderResult row(float exposure, Tonemap tonemap) {
         Stage stage;
-        for (size_t i = 0; i < kRow.size(); i++) stage.add(parallelogram({float(i), 0, 0}, {1, 0, 0}, {0, 1, 0}), unlit(kRow[i]));
+        for (size_t i = 0; i < kRow.size(); i++)
+            stage.add(parallelogram({float(i), 0, 0}, {1, 0, 0}, {0, 1, 0}), unlit(kRow[i]));
         RenderSettings settings = settings_for(orthographic({4, 0.5f, 3}, {4, 0.5f, 0}, 1));
         settings.width = 8;
         settings.height = 1;
@@ -52,7 +56,8 @@ TEST_F(EncodingTest, KnownRadianceGivesKnownBytes) {
                 glm::dvec3 c = glm::dvec3(kRow[i]) * std::exp2(double(exposure));
                 if (curve == Tonemap::aces) c = aces(c);
                 if (curve == Tonemap::neutral) c = neutral(c);
-                for (int k = 0; k < 3; k++) EXPECT_NEAR(picture.encoded[i] >> (8 * k) & 255, encode(c[k]), 0.51 + 0.05) << i << " " << k;
+                for (int k = 0; k < 3; k++)
+                    EXPECT_NEAR(picture.encoded[i] >> (8 * k) & 255, encode(c[k]), 0.51 + 0.05) << i << " " << k;
                 EXPECT_EQ(picture.encoded[i] >> 24, 255u);
                 // Exposure and curve leave the radiance alone.
                 EXPECT_TRUE(near(glm::dvec3(picture.radiance[i]), glm::dvec3(kRow[i]), 1e-5));
@@ -64,7 +69,8 @@ TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {
     Stage stage;
     stage.add(ground(1), unlit({1, 1, 1}));
     const RenderSettings good = settings_for(from_above(1), 8);
-    const auto refuses = [&](const std::function<void(RenderSettings&)>& change, std::initializer_list<std::string> parts) {
+    const auto refuses = [&](const std::function<void(RenderSettings&)>& change,
+                             std::initializer_list<std::string> parts) {
         RenderSettings settings = good;
         change(settings);
         expect_error([&] { render(stage, black, settings); }, parts);

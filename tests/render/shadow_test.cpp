@@ -7,9 +7,9 @@ namespace {
 using ShadowTest = PictureTest;
 
 struct Shadowed {
-    std::function<bool(glm::dvec3)> covered;       ///< the floor's point is in shadow or hidden from the camera below a body
-    std::function<bool(glm::dvec3)> hidden;        ///< the camera does not see the floor's point
-    std::function<double(glm::dvec3)> lit;         ///< radiance where no shadow is
+    std::function<bool(glm::dvec3)> covered;  ///< the floor's point is in shadow or hidden from the camera below a body
+    std::function<bool(glm::dvec3)> hidden;   ///< the camera does not see the floor's point
+    std::function<double(glm::dvec3)> lit;    ///< radiance where no shadow is
 };
 
 /// Floor y = 0 from above: every pixel whose neighbourhood of ± 1 pixel is of one kind must be exactly of that kind.
@@ -20,7 +20,8 @@ Tally tally_outline(const RenderResult& picture, const Camera& camera, const Sha
         if (scene.hidden(p)) return {};
         const bool covered = scene.covered(p);
         for (int i = 0; i < 8; i++)
-            if (scene.covered(p + pixel * glm::dvec3(std::cos(i * kPi / 4), 0, std::sin(i * kPi / 4))) != covered) return {};
+            if (scene.covered(p + pixel * glm::dvec3(std::cos(i * kPi / 4), 0, std::sin(i * kPi / 4))) != covered)
+                return {};
         return glm::dvec3(covered ? 0 : scene.lit(p));
     });
 }
@@ -38,10 +39,12 @@ TEST_F(ShadowTest, DiscUnderTheSun) {
     const Camera camera = from_above(4);
     const RenderResult picture = render(stage, black, settings_for(camera, 128));
     const glm::dvec3 shift = travel / -travel.y;
-    tally_outline(picture, camera,
-                  {[&](glm::dvec3 p) { return in_disc(p, centre + shift, 0.5); },
-                   [&](glm::dvec3 p) { return in_disc(p, centre, 0.53); }, [&](glm::dvec3) { return 2 * -travel.y / kPi; }},
-                  1e-3).expect(0, 12000);
+    tally_outline(
+        picture, camera,
+        {[&](glm::dvec3 p) { return in_disc(p, centre + shift, 0.5); },
+         [&](glm::dvec3 p) { return in_disc(p, centre, 0.53); }, [&](glm::dvec3) { return 2 * -travel.y / kPi; }},
+        1e-3)
+        .expect(0, 12000);
 }
 
 TEST_F(ShadowTest, DiscUnderALamp) {
@@ -56,8 +59,11 @@ TEST_F(ShadowTest, DiscUnderALamp) {
     tally_outline(picture, camera,
                   {[&](glm::dvec3 p) { return in_disc(p, shadow, 0.3 * 2.5 / 1.5); },
                    [&](glm::dvec3 p) { return in_disc(p, centre, 0.33); },
-                   [&](glm::dvec3 p) { return 10 * 2.5 / std::pow(glm::length(lamp - p), 3) / kPi; }},  // inverse square times cosine
-                  1e-3).expect(0, 12000);
+                   [&](glm::dvec3 p) {
+                       return 10 * 2.5 / std::pow(glm::length(lamp - p), 3) / kPi;
+                   }},  // inverse square times cosine
+                  1e-3)
+        .expect(0, 12000);
 }
 
 TEST_F(ShadowTest, BodyBehindALampCastsNone) {
@@ -66,9 +72,11 @@ TEST_F(ShadowTest, BodyBehindALampCastsNone) {
     stage.add(ground(4, 2), lambert({1, 1, 1}));
     stage.lamp({0, 1, 0}, {10, 10, 10});
     const Camera camera = orthographic({0, 1.9f, 0}, {0, 0, 0}, 2, {0, 0, -1});
-    tally(render(stage, black, settings_for(camera)), camera, 1e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        return glm::dvec3(10 / std::pow(glm::length(glm::dvec3(0, 1, 0) - ray.at_plane(1, 0)), 3) / kPi);
-    }).expect(0, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 1e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              return glm::dvec3(10 / std::pow(glm::length(glm::dvec3(0, 1, 0) - ray.at_plane(1, 0)), 3) / kPi);
+          })
+        .expect(0, 4096);
 }
 
 TEST_F(ShadowTest, TouchesTheBoxThatCastsIt) {
@@ -101,8 +109,11 @@ TEST_F(ShadowTest, TouchesTheBoxThatCastsIt) {
         RenderSettings settings = settings_for(camera, 160);
         settings.ldc = ldc;
         const RenderResult picture = render(stage, black, settings);
-        tally_outline(picture, camera, {covered, [&](glm::dvec3 p) { return under(p, 1e-4); }, [&](glm::dvec3) { return 2 * -travel.y / kPi; }},
-                      1e-3).expect(0, 18000);
+        tally_outline(
+            picture, camera,
+            {covered, [&](glm::dvec3 p) { return under(p, 1e-4); }, [&](glm::dvec3) { return 2 * -travel.y / kPi; }},
+            1e-3)
+            .expect(0, 18000);
     }
 }
 
@@ -125,10 +136,13 @@ TEST_F(ShadowTest, NoAcneOnAFinePlaneInGrazingLight) {
     stage.add(turned(grid, 23, axis), lambert({1, 1, 1}));
     stage.sun(turn * glm::vec3(std::cos(elevation), -std::sin(elevation), 0), {100, 100, 100});
     for (uint32_t ldc : {48u, 256u}) {
-        RenderSettings settings = settings_for(orthographic(turn * glm::vec3(0, 4, 0), {0, 0, 0}, 5.5f, turn * glm::vec3(0, 0, -1)), 96);
+        RenderSettings settings =
+            settings_for(orthographic(turn * glm::vec3(0, 4, 0), {0, 0, 0}, 5.5f, turn * glm::vec3(0, 0, -1)), 96);
         settings.ldc = ldc;
         const double want = 100 * std::sin(1.5 * kPi / 180) / kPi;
-        tally(render(stage, black, settings), settings.camera, 0.01 * want, [&](const ViewRay&) { return glm::dvec3(want); }).expect(0, 96 * 96);
+        tally(render(stage, black, settings), settings.camera, 0.01 * want, [&](const ViewRay&) {
+            return glm::dvec3(want);
+        }).expect(0, 96 * 96);
     }
 }
 
@@ -148,7 +162,9 @@ TEST_F(ShadowTest, NoAcneOnASphere) {
         for (size_t i = 0; i < picture.radiance.size(); i++) {
             if (picture.aovs.triangle[i] < 0) continue;
             const double cosine = -glm::dot(glm::dvec3(picture.aovs.normal[i]), travel), got = picture.radiance[i].x;
-            const auto example = [&, i] { return fmt::format("pixel {},{}: {:.4f}, cosine {:.4f}", i % 128, i / 128, got, cosine); };
+            const auto example = [&, i] {
+                return fmt::format("pixel {},{}: {:.4f}, cosine {:.4f}", i % 128, i / 128, got, cosine);
+            };
             if (cosine > band) bright.add(std::abs(got - 3 * cosine / kPi) < 0.02 * 3 / kPi, example);
             if (cosine < -band) dark.add(got == 0, example);
         }
@@ -168,14 +184,18 @@ TEST_F(ShadowTest, SpotConeFadesBetweenItsAngles) {
     const Camera camera = from_above(4);
     const glm::dvec3 position = spot.position, direction = spot.direction;
     size_t inside = 0, between = 0, outside = 0;
-    tally(render(stage, black, settings_for(camera)), camera, 2e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        const glm::dvec3 to_floor = ray.at_plane(1, 0) - position;
-        const double distance = glm::length(to_floor), angle = std::acos(glm::dot(to_floor, direction) / distance) * 180 / kPi;
-        const double fade = (std::cos(angle * kPi / 180) - std::cos(32 * kPi / 180)) / (std::cos(15 * kPi / 180) - std::cos(32 * kPi / 180));
-        const double cone = angle < 15 ? 1 : angle > 32 ? 0 : fade * fade;
-        (angle < 15 ? inside : angle > 32 ? outside : between)++;
-        return glm::dvec3(20, 10, 5) * (cone * 2 / std::pow(distance, 3) / kPi);
-    }).expect(0, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 2e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const glm::dvec3 to_floor = ray.at_plane(1, 0) - position;
+              const double distance = glm::length(to_floor),
+                           angle = std::acos(glm::dot(to_floor, direction) / distance) * 180 / kPi;
+              const double fade = (std::cos(angle * kPi / 180) - std::cos(32 * kPi / 180)) /
+                                  (std::cos(15 * kPi / 180) - std::cos(32 * kPi / 180));
+              const double cone = angle < 15 ? 1 : angle > 32 ? 0 : fade * fade;
+              (angle < 15 ? inside : angle > 32 ? outside : between)++;
+              return glm::dvec3(20, 10, 5) * (cone * 2 / std::pow(distance, 3) / kPi);
+          })
+        .expect(0, 4096);
     EXPECT_GT(inside, 100u);
     EXPECT_GT(between, 500u);
     EXPECT_GT(outside, 500u);
@@ -187,12 +207,14 @@ TEST_F(ShadowTest, LampEndsAtItsRange) {
     stage.lamp({0, 1, 0}, {10, 10, 10}).range = 1.8f;
     const Camera camera = from_above(4);
     size_t beyond = 0;
-    tally(render(stage, black, settings_for(camera)), camera, 1e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        const double distance = glm::length(ray.at_plane(1, 0) - glm::dvec3(0, 1, 0));
-        beyond += distance > 1.8;
-        // KHR_lights_punctual, "Range Property".
-        return glm::dvec3(10 * std::max(0.0, 1 - std::pow(distance / 1.8, 4)) / std::pow(distance, 3) / kPi);
-    }).expect(0, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 1e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const double distance = glm::length(ray.at_plane(1, 0) - glm::dvec3(0, 1, 0));
+              beyond += distance > 1.8;
+              // KHR_lights_punctual, "Range Property".
+              return glm::dvec3(10 * std::max(0.0, 1 - std::pow(distance / 1.8, 4)) / std::pow(distance, 3) / kPi);
+          })
+        .expect(0, 4096);
     EXPECT_GT(beyond, 500u);
 }
 

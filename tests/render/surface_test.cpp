@@ -6,9 +6,12 @@ namespace {
 
 using SurfaceTest = PictureTest;
 
-double linear(double code) { return code <= 0.04045 * 255 ? code / 255 / 12.92 : std::pow((code / 255 + 0.055) / 1.055, 2.4); }
+double linear(double code) {
+    return code <= 0.04045 * 255 ? code / 255 / 12.92 : std::pow((code / 255 + 0.055) / 1.055, 2.4);
+}
 
-const uint8_t kTexels[2][3][3] = {{{255, 0, 40}, {10, 128, 200}, {90, 60, 30}}, {{0, 255, 5}, {180, 188, 70}, {33, 66, 99}}};
+const uint8_t kTexels[2][3][3] = {{{255, 0, 40}, {10, 128, 200}, {90, 60, 30}},
+                                  {{0, 255, 5}, {180, 188, 70}, {33, 66, 99}}};
 
 Texture small_texture(Texture::Wrap u, Texture::Wrap v, bool nearest) {
     Texture t;
@@ -46,16 +49,20 @@ TEST_F(SurfaceTest, TexturesWrapAndFilter) {
             stage.add(quad, unlit({1, 1, 1}));
             stage.scene.materials[0].base_color_texture = 0;
             stage.scene.textures.push_back(small_texture(u, v, nearest));
-            tally(render(stage, black, settings_for(camera)), camera, 1e-3, [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-                const double x = (-2.3 + (ray.origin.x + 1) / 2 * 5) * 3, y = (-1.8 + (1 - ray.origin.y) / 2 * 4) * 2;
-                if (nearest) {
-                    if (std::abs(x - std::round(x)) < 1e-3 || std::abs(y - std::round(y)) < 1e-3) return {};
-                    return texel(int(std::floor(x)), int(std::floor(y)), u, v);
-                }
-                const int i = int(std::floor(x - 0.5)), j = int(std::floor(y - 0.5));
-                const double fx = x - 0.5 - i, fy = y - 0.5 - j;
-                return glm::mix(glm::mix(texel(i, j, u, v), texel(i + 1, j, u, v), fx), glm::mix(texel(i, j + 1, u, v), texel(i + 1, j + 1, u, v), fx), fy);
-            }).expect(0, 3900);
+            tally(render(stage, black, settings_for(camera)), camera, 1e-3,
+                  [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+                      const double x = (-2.3 + (ray.origin.x + 1) / 2 * 5) * 3,
+                                   y = (-1.8 + (1 - ray.origin.y) / 2 * 4) * 2;
+                      if (nearest) {
+                          if (std::abs(x - std::round(x)) < 1e-3 || std::abs(y - std::round(y)) < 1e-3) return {};
+                          return texel(int(std::floor(x)), int(std::floor(y)), u, v);
+                      }
+                      const int i = int(std::floor(x - 0.5)), j = int(std::floor(y - 0.5));
+                      const double fx = x - 0.5 - i, fy = y - 0.5 - j;
+                      return glm::mix(glm::mix(texel(i, j, u, v), texel(i + 1, j, u, v), fx),
+                                      glm::mix(texel(i, j + 1, u, v), texel(i + 1, j + 1, u, v), fx), fy);
+                  })
+                .expect(0, 3900);
         }
 }
 
@@ -64,7 +71,8 @@ TEST_F(SurfaceTest, SecondTextureIsFoundAndTinted) {
     stage.add(faces({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}), unlit({0.5f, 2, 1}));
     stage.scene.meshes[0].primitives[0].uvs.assign(4, glm::vec2(0.5f, 0.25f));
     stage.scene.materials[0].base_color_texture = 1;
-    stage.scene.textures = {small_texture(Texture::Wrap::repeat, Texture::Wrap::repeat, true), small_texture(Texture::Wrap::repeat, Texture::Wrap::repeat, true)};
+    stage.scene.textures = {small_texture(Texture::Wrap::repeat, Texture::Wrap::repeat, true),
+                            small_texture(Texture::Wrap::repeat, Texture::Wrap::repeat, true)};
     stage.scene.textures[1].texels[1] = 0xff8040bc;  // rgb 188, 64, 128
     const Camera camera = orthographic({0, 0, 2}, {0, 0, 0}, 1.8f);
     tally(render(stage, black, settings_for(camera, 16)), camera, 1e-5, [](const ViewRay&) {
@@ -79,11 +87,13 @@ TEST_F(SurfaceTest, VertexColoursInterpolate) {
     stage.add(quad, unlit({0.5f, 0.25f, 0.75f}));
     stage.add(parallelogram({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), unlit({0.1f, 0.2f, 0.3f}));  // without colours: white
     const Camera camera = orthographic({0, 0, 2}, {0, 0, 0}, 3);
-    tally(render(stage, black, settings_for(camera)), camera, 1e-4, [](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        const double x = ray.origin.x, y = ray.origin.y;
-        if (std::abs(x) < 1 && std::abs(y) < 1) return glm::dvec3(0.5 * (x + 1), 0.25 * (y + 1), 0.75);
-        return glm::dvec3(0.1f, 0.2f, 0.3f);
-    }).expect(0, 4096);
+    tally(render(stage, black, settings_for(camera)), camera, 1e-4,
+          [](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const double x = ray.origin.x, y = ray.origin.y;
+              if (std::abs(x) < 1 && std::abs(y) < 1) return glm::dvec3(0.5 * (x + 1), 0.25 * (y + 1), 0.75);
+              return glm::dvec3(0.1f, 0.2f, 0.3f);
+          })
+        .expect(0, 4096);
 }
 
 /// Left: a mirror, middle: a pane of glass over the floor, right: the floor with a box that shadows it.
@@ -117,7 +127,7 @@ TEST_F(SwitchTest, EffectsGoOffOneByOne) {
     EXPECT_TRUE(near(all.shadow, {0, lit_by_sky, 0}, 0.02)) << text(all.shadow);
     const double r = 0.04, pane = 2 * r / (1 + r);
     EXPECT_NEAR(all.glass.z - all.glass.x, pane * 3, 0.01) << text(all.glass);  // the ceiling in the pane
-    EXPECT_GT(all.glass.x, 0.5);                                                  // the lit floor through the pane
+    EXPECT_GT(all.glass.x, 0.5);                                                // the lit floor through the pane
 
     settings_.reflection = false;
     const Colors no_reflection = colors(settings_);
@@ -158,7 +168,8 @@ TEST_F(SwitchTest, WithoutTracingNothingIsTraced) {
     off.trace = true;
     off.reflection = off.refraction = off.shadow = false;
     const Colors same = colors(off);
-    EXPECT_TRUE(near(same.mirror, none.mirror, 1e-6) && near(same.glass, none.glass, 1e-6) && near(same.shadow, none.shadow, 1e-6));
+    EXPECT_TRUE(near(same.mirror, none.mirror, 1e-6) && near(same.glass, none.glass, 1e-6) &&
+                near(same.shadow, none.shadow, 1e-6));
 }
 
 TEST_F(SurfaceTest, CarelessMeshesLeaveNoHoles) {
@@ -183,7 +194,8 @@ TEST_F(SurfaceTest, CarelessMeshesLeaveNoHoles) {
         const RenderResult picture = render(stage, white, settings);
         Tally result;
         for (const glm::vec4& p : picture.radiance)
-            result.add(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && p.x > 0.5f, [&] { return text(glm::dvec3(p)); });
+            result.add(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && p.x > 0.5f,
+                       [&] { return text(glm::dvec3(p)); });
         result.expect(0, 96 * 96);
     }
 }
