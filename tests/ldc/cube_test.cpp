@@ -310,6 +310,26 @@ TEST_F(CubeTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {
     }
 }
 
+/// Bounded on a CPU: its shaders' loops are cut off silently, so that a list beyond what sorts must be refused, not mangled.
+TEST_F(CubeTest, SoftwareDevicesRefuseListsThatTheyCannotSort) {
+    if (device().info().kind != "CPU") GTEST_SKIP() << "GPUs sort lists of any length";
+    Mesh3 mesh;
+    const auto add = [&](const vec3& at) {
+        const uint32_t first = uint32_t(mesh.positions.size());
+        for (const vec3& corner : {vec3(0), vec3(0.1f, 0, 0), vec3(0, 0.1f, 0)}) mesh.positions.push_back(at + corner);
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    };
+    add(vec3(0));
+    add(vec3(10));
+    for (int i = 0; i < 200'001; i++) add(vec3(5.1f));
+    const TriangleBuffers triangles(device(), mesh.positions, mesh.triangles, vec3(0), vec3(10.1f));
+    ComputeBuilder builder(device());
+    Commands commands(device());
+    Cube cube;
+    expect_error([&] { builder.build(commands, triangles, cube, 16, Sampling::conservative); },
+                 {"200001", "--ldc", "GPU"});
+}
+
 TEST_F(CubeTest, BytesAreWhatTheTablesUse) {
     const Built built = build(soup(3, 200, vec3(1, 0.5f, 0.2f), 2.0f / 64), 64, Sampling::conservative);
     const Cube::Bytes bytes = built.cube.bytes();
