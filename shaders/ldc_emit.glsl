@@ -18,7 +18,10 @@ uint ldcReserve(uint count) {
         emit_sums[lane] += other;
         barrier();
     }
-    if (lane == gl_WorkGroupSize.x - 1u) emit_base = emit_sums[lane] == 0u ? 0u : atomicAdd(counters[0].fragments, emit_sums[lane]);
+    if (lane == gl_WorkGroupSize.x - 1u && emit_sums[lane] != 0u) {
+        emit_base = atomicAdd(counters[0].fragments, emit_sums[lane]);
+        if (emit_base + emit_sums[lane] < emit_base) counters[0].wrapped = 1u;
+    }
     barrier();
     const uint position = emit_base + emit_sums[lane] - count;
     barrier();

@@ -46,8 +46,9 @@ struct LdcCounters {
     uint longest;     ///< samples of the longest list
     uint degenerate;  ///< triangles without area: dropped
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
+    uint wrapped;     ///< 1: more fragments than 32 bits count
 };
-SHARED_SIZE(LdcCounters, 40);
+SHARED_SIZE(LdcCounters, 44);
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
 #define LDC_GROUPS_BIG 0u

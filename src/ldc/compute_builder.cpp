@@ -9,9 +9,9 @@
 namespace peelray {
 namespace {
 
-/// llvmpipe stops a shader's loops after 65,535 iterations, silently: ldc_sort_long needs 73 for 256 samples. Measured:
-/// 150,000 are sorted, 220,000 are not.
-constexpr uint32_t kLongestListOnCpu = 200'000;
+/// llvmpipe stops a shader's loops after 65,535 iterations in all, silently, and a ray walks through lists sample by
+/// sample. Measured: a list of 30,000 is traced right, one of 45,000 is not; a ray may meet several.
+constexpr uint32_t kLongestListOnCpu = 16'000;
 
 uint32_t top_count(const CubeGrid& grid) {
     return (grid.dims.x / 16) * (grid.dims.y / 16) * (grid.dims.z / 16);
@@ -219,6 +219,7 @@ void ComputeBuilder::record(Commands& commands, const TriangleBuffers& triangles
 bool ComputeBuilder::finish(Cube& cube) {
     std::memcpy(&cube.counts, counters_readback_.mapped(), sizeof cube.counts);
     const LdcCounters& counts = cube.counts;
+    if (counts.wrapped) fail("the cube would hold more than 2^32 samples: use a smaller --ldc");
     // A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three
     // stages.
     bool grown = grow(capacity_.big, counts.big);
@@ -229,7 +230,8 @@ bool ComputeBuilder::finish(Cube& cube) {
     grown |= grow(capacity_.long_lists, counts.long_lists);
     if (!grown && counts.longest > kLongestListOnCpu && device_.info().kind == "CPU")
         fail(
-            "{} triangles crowd into one voxel, more than the software device '{}' can sort ({}): use a larger --ldc, "
+            "{} triangles crowd into one voxel, more than rays can walk through on the software device '{}' ({}): use "
+            "a larger --ldc, "
             "or a GPU",
             counts.longest, device_.info().name, kLongestListOnCpu);
     if (!grown) return true;
