@@ -156,7 +156,6 @@ struct Frame {
     uint width;
     uint height;
     uint row_pixels;     ///< width rounded up to 8: records of one row of 8x8 tiles / 8
-    uint triangles;
     uint lights;
     // Environment.
     uvec2 env_size;
@@ -170,10 +169,9 @@ struct Frame {
     float surface_offset;  ///< along the normal, in world units, before a secondary ray starts (planar hits)
     uint spp;
     uint last_level;     ///< level whose hits spawn no more rays
-    uint planar;
     float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
 };
-SHARED_SIZE(Frame, 288);
+SHARED_SIZE(Frame, 280);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
@@ -222,9 +220,8 @@ struct LevelParams {
     uint sample_index;
     vec2 jitter;
     uint first_row;      ///< of the band, a multiple of 8
-    uint rows;           ///< of the band
 };
-SHARED_SIZE(LevelParams, 32);
+SHARED_SIZE(LevelParams, 28);
 
 struct TonemapParams {
     uint pixels;

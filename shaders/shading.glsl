@@ -9,7 +9,6 @@ const float MIRROR_ROUGHNESS = 0.05;
 
 vec3 srgbToLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
 vec3 linearToSrgb(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
 /// Unpolarised Fresnel reflectance of a dielectric; `cosine` ≥ 0 on the incoming side, `eta` = index behind / index before.

@@ -148,7 +148,7 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
         while (more && candidate == PEELRAY_MISS) {
             PEELRAY_COUNT(z);
             // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
-            // word 1: slopes (2x14 bits: [-1, 1]), axis (2 bits), last of its list (1 bit)
+            // word 1: slopes (2x14 bits: PEELRAY_SLOPE_RANGE), axis (2 bits), last of its list (1 bit)
             const uvec2 data = PEELRAY_SAMPLE(j);
             const uint axis = data.y >> 28u & 3u;
             const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;

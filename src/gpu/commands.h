@@ -51,11 +51,20 @@ class Commands {
     void run(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params, Groups groups) {
         record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, groups, nullptr, 0);
     }
+    template <typename Params>
+    void run(const Pass& pass, std::span<const Binding> bindings, const Params& params, Groups groups) {
+        record(pass, bindings, &params, sizeof params, groups, nullptr, 0);
+    }
     /// The same with the workgroup counts read on the GPU: three uint32 in `arguments` at byte `offset`.
     template <typename Params>
     void run_indirect(const Pass& pass, std::initializer_list<Binding> bindings, const Params& params,
                       const Buffer& arguments, uint64_t offset = 0) {
         record(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, {}, &arguments, offset);
+    }
+    template <typename Params>
+    void run_indirect(const Pass& pass, std::span<const Binding> bindings, const Params& params,
+                      const Buffer& arguments, uint64_t offset = 0) {
+        record(pass, bindings, &params, sizeof params, {}, &arguments, offset);
     }
     /// Draws `vertices` vertices into `color` (R32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies
     /// the colour to `target` (width·height uint32).

@@ -104,7 +104,6 @@ uint64_t GpuScene::bytes() const {
 }
 
 void GpuScene::describe(Frame& frame) const {
-    frame.triangles = triangles.count;
     frame.lights = light_count;
     frame.has_colors = has_colors;
     frame.env_size = env_size_;

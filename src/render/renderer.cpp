@@ -99,7 +99,7 @@ struct Renderer::Impl {
     void record_band(uint32_t sample, uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
-    Groups level_groups(uint32_t level) { return groups_for(queues.level(level).capacity, 64); }
+    std::vector<Binding> with_surface(std::initializer_list<Binding> others) const;
 };
 
 void Renderer::Impl::check_settings() const {
@@ -158,7 +158,6 @@ void Renderer::Impl::prepare_frame() {
         frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) |
                         (settings.refraction ? EFFECT_REFRACTION : 0u) | (settings.shadow ? EFFECT_SHADOW : 0u) |
                         (settings.ambient ? EFFECT_AMBIENT : 0u);
-    frame.planar = hit == HitTest::planar;
     // Planar hits know a surface to about a voxel: a ray starts beyond its own surface's samples (DESIGN.md section 3).
     frame.surface_offset = settings.trace && hit == HitTest::planar ? 1.5f * cube.grid.voxel : 0;
     frame.spp = settings.spp;
@@ -195,7 +194,6 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
     p.sample_index = sample;
     p.jitter = jitter_of(sample);
     p.first_row = first_row;
-    p.rows = band_rows;
     // Level 0 holds exactly the band's pixels; the last band may be lower.
     if (level == 0) p.capacity = frame.row_pixels * std::min(band_rows, (settings.height - first_row + 7) / 8 * 8);
     return p;
@@ -215,28 +213,34 @@ void Renderer::Impl::record_primary(const LevelParams& p) {
                  p, groups_for(p.capacity, 64));
 }
 
+/// What surfaceAt() of frame.glsl reads, and `others`.
+std::vector<Binding> Renderer::Impl::with_surface(std::initializer_list<Binding> others) const {
+    std::vector<Binding> bindings = {{"frame", frame_buffer},
+                                     {"materials", scene.materials},
+                                     {"texture_infos", scene.texture_infos},
+                                     {"texels", scene.texels},
+                                     {"normals", scene.normals},
+                                     {"uvs", scene.uvs},
+                                     {"colors", scene.colors},
+                                     {"triangle_materials", scene.triangle_materials},
+                                     {"positions", scene.triangles.positions},
+                                     {"triangles", scene.triangles.triangles}};
+    for (const Binding& other : others) bindings.push_back(other);
+    return bindings;
+}
+
 void Renderer::Impl::record_scatter(const LevelParams& p) {
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
     commands.run_indirect(device.pass("scatter"),
-                          {{"frame", frame_buffer},
-                           {"materials", scene.materials},
-                           {"texture_infos", scene.texture_infos},
-                           {"texels", scene.texels},
-                           {"normals", scene.normals},
-                           {"uvs", scene.uvs},
-                           {"colors", scene.colors},
-                           {"triangle_materials", scene.triangle_materials},
-                           {"environment", scene.environment},
-                           {"positions", scene.triangles.positions},
-                           {"triangles", scene.triangles.triangles},
-                           {"rays", level.rays},
-                           {"states", level.states},
-                           {"hits", level.hits},
-                           {"nodes", level.nodes},
-                           {"queue", queues.counters()},
-                           {"next_rays", next.rays},
-                           {"next_states", next.states},
-                           {"next_skip", next.skip}},
+                          with_surface({{"environment", scene.environment},
+                                        {"rays", level.rays},
+                                        {"states", level.states},
+                                        {"hits", level.hits},
+                                        {"nodes", level.nodes},
+                                        {"queue", queues.counters()},
+                                        {"next_rays", next.rays},
+                                        {"next_states", next.states},
+                                        {"next_skip", next.skip}}),
                           p, queues.groups(), p.level * 12);
 }
 
@@ -246,27 +250,17 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     // Without a cube its bindings still need buffers; the shader does not read them then.
     const auto cube_buffer = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
     commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
-                          {{"top_table", cube_buffer(cube.top_table)},
-                           {"node_table", cube_buffer(cube.node_table)},
-                           {"voxel_table", cube_buffer(cube.voxel_table)},
-                           {"samples", cube_buffer(cube.samples)},
-                           {"sample_ids", cube_buffer(cube.sample_ids)},
-                           {"positions", scene.triangles.positions},
-                           {"triangles", scene.triangles.triangles},
-                           {"frame", frame_buffer},
-                           {"materials", scene.materials},
-                           {"texture_infos", scene.texture_infos},
-                           {"texels", scene.texels},
-                           {"normals", scene.normals},
-                           {"uvs", scene.uvs},
-                           {"colors", scene.colors},
-                           {"triangle_materials", scene.triangle_materials},
-                           {"rays", level.rays},
-                           {"states", level.states},
-                           {"hits", level.hits},
-                           {"nodes", level.nodes},
-                           {"queue", queues.counters()},
-                           {"lights", scene.lights}},
+                          with_surface({{"top_table", cube_buffer(cube.top_table)},
+                                        {"node_table", cube_buffer(cube.node_table)},
+                                        {"voxel_table", cube_buffer(cube.voxel_table)},
+                                        {"samples", cube_buffer(cube.samples)},
+                                        {"sample_ids", cube_buffer(cube.sample_ids)},
+                                        {"rays", level.rays},
+                                        {"states", level.states},
+                                        {"hits", level.hits},
+                                        {"nodes", level.nodes},
+                                        {"queue", queues.counters()},
+                                        {"lights", scene.lights}}),
                           p, queues.groups(), p.level * 12);
 }
 
@@ -341,21 +335,10 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
         record_primary(p);
-        commands.run(device.pass("aov"),
-                     {{"frame", frame_buffer},
-                      {"materials", scene.materials},
-                      {"texture_infos", scene.texture_infos},
-                      {"texels", scene.texels},
-                      {"normals", scene.normals},
-                      {"uvs", scene.uvs},
-                      {"colors", scene.colors},
-                      {"triangle_materials", scene.triangle_materials},
-                      {"positions", scene.triangles.positions},
-                      {"triangles", scene.triangles.triangles},
-                      {"rays", queues.level(0).rays},
-                      {"hits", queues.level(0).hits},
-                      {"aovs", aov_buffer}},
-                     p, groups_for(p.capacity, 64));
+        commands.run(
+            device.pass("aov"),
+            with_surface({{"rays", queues.level(0).rays}, {"hits", queues.level(0).hits}, {"aovs", aov_buffer}}), p,
+            groups_for(p.capacity, 64));
     }
     commands.submit();
     const auto data = commands.download<glm::vec4>(aov_buffer, pixels * 4);
