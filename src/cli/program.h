@@ -32,22 +32,27 @@ struct TracingArguments {
     void check() const;
 };
 
-struct RenderArguments {
+/// What a picture shows and how it is made; shared by render and compare.
+struct PictureArguments {
     std::string scene;
-    std::filesystem::path output, stats;
     glm::uvec2 size{1280, 1024};
     std::string camera, env;
     std::optional<glm::vec3> eye, look, up, background;
     std::optional<float> fov;  ///< degrees
     bool sky = false, floor = false;
     std::string material, tonemap = "neutral";
-    std::vector<std::string> effects = {"reflection", "refraction", "shadow"}, aovs;
+    std::vector<std::string> effects = {"reflection", "refraction", "shadow"};
     float exposure = 0;
     std::optional<double> time, fps;
     std::string frames;
     uint32_t bounces = 4, spp = 1, repeat = 1;
     TracingArguments tracing;
     DeviceArguments device;
+};
+
+struct RenderArguments : PictureArguments {
+    std::filesystem::path output, stats;
+    std::vector<std::string> aovs;
 };
 
 struct TraceArguments {

@@ -53,13 +53,13 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
         if (pass.name == "shadow") shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
-    json["rays"] = {{"primary", s.rays.primary},
-                    {"reflection", s.rays.reflection},
-                    {"refraction", s.rays.refraction},
-                    {"shadow", s.rays.shadow},
-                    {"ambient", s.rays.ambient}};
-    json["mrays_per_second"] = {{"reflection_and_refraction", rate(s.rays.reflection + s.rays.refraction, trace_ms)},
-                                {"shadow_and_ambient_with_shading", rate(s.rays.shadow + s.rays.ambient, shadow_ms)}};
+    json["rays"] = {{"primary", result.rays.primary},
+                    {"reflection", result.rays.reflection},
+                    {"refraction", result.rays.refraction},
+                    {"shadow", result.rays.shadow},
+                    {"ambient", result.rays.ambient}};
+    json["mrays_per_second"] = {{"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
+                                {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
     if (s.ldc)
         json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes,
                                  s.hit == HitTest::exact ? "conservative" : "centre");

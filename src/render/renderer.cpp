@@ -5,17 +5,10 @@
 #include <map>
 
 #include "base/error.h"
-#include "render/camera.h"
 #include "render/path_queues.h"
 
 namespace peelray {
 namespace {
-
-/// R2 sequence (Roberts 2018): sample 0 is the pixel's centre, any prefix is spread evenly.
-glm::vec2 jitter_of(uint32_t sample) {
-    const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;
-    return {float(x - std::floor(x)), float(y - std::floor(y))};
-}
 
 /// Adds up pass times by name, keeping the order of first appearance.
 class TimeTable {
@@ -37,6 +30,16 @@ double median(std::vector<double> values) {
     if (values.empty()) return 0;
     std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
     return values[values.size() / 2];
+}
+
+void describe_view(Frame& frame, const View& view) {
+    frame.eye = view.eye;
+    frame.right = view.right;
+    frame.up = view.up;
+    frame.forward = view.forward;
+    frame.orthographic = view.orthographic;
+    frame.near = view.near;
+    frame.far = view.far;
 }
 
 }  // namespace
@@ -148,7 +151,7 @@ void Renderer::Impl::prepare_frame() {
 
     frame = {};
     frame.grid = cube.grid;
-    describe_camera(frame, settings.camera, float(settings.width) / float(settings.height), lower, upper);
+    describe_view(frame, make_view(settings.camera, float(settings.width) / float(settings.height), lower, upper));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = row_pixels;
@@ -183,7 +186,7 @@ void Renderer::Impl::record_visibility(uint32_t sample) {
     commands.draw(
         device.raster_pass("visibility"),
         {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
-        VisibilityParams{jitter_of(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
+        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -192,7 +195,7 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
     p.capacity = queues.level(level).capacity;
     p.next_capacity = queues.level(level + 1).capacity;
     p.sample_index = sample;
-    p.jitter = jitter_of(sample);
+    p.jitter = sample_position(sample);
     p.first_row = first_row;
     // Level 0 holds exactly the band's pixels; the last band may be lower.
     if (level == 0) p.capacity = frame.row_pixels * std::min(band_rows, (settings.height - first_row + 7) / 8 * 8);
@@ -388,7 +391,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     }
     stats.frame_ms = median(frames);
     stats.timed = r.device.timestamp_period() > 0;
-    stats.rays = r.rays;
+    result.rays = r.rays;
     stats.redone = r.redone;
     stats.hit = choice.hit;
     stats.scene_bytes = r.scene.bytes();

@@ -106,11 +106,14 @@ Geometry flatten(const Scene& scene) {
         worlds.push_back(node.parent < 0 ? node.local : worlds[static_cast<size_t>(node.parent)] * node.local);
         if (node.mesh < 0) continue;
         const NormalTransform to_normal(worlds.back());
+        const auto first_triangle = static_cast<uint32_t>(out.triangles.size());
         for (const Primitive& primitive : scene.meshes[static_cast<size_t>(node.mesh)].primitives) {
             const auto first = static_cast<uint32_t>(out.positions.size());
             append_vertices(out, primitive, worlds.back(), to_normal, node, totals);
             append_triangles(out, primitive, first, to_normal.mirrors);
         }
+        const auto count = static_cast<uint32_t>(out.triangles.size()) - first_triangle;
+        if (count > 0) out.objects.push_back({first_triangle, count});
     }
     return out;
 }

@@ -113,12 +113,18 @@ struct Scene {
 /// their index; nothing is reordered. Under a mirroring transform the second and third corner swap, so that the front
 /// stays in front.
 struct Geometry {
+    /// What moves as one: the triangles of one node of the scene, contiguous.
+    struct Object {
+        uint32_t first, count;  ///< triangles
+    };
+
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  ///< one per position, unit
     std::vector<glm::vec2> uvs;      ///< one per position (0 where the file has none)
     std::vector<glm::vec4> colors;   ///< one per position, or empty if no primitive has colours
     std::vector<glm::uvec3> triangles;
     std::vector<uint32_t> materials;  ///< one per triangle
+    std::vector<Object> objects;      ///< ascending, without gaps; together all triangles
     glm::vec3 lower{0}, upper{0};     ///< bounds of all referenced positions; lower > upper: no triangle
     uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
 };

@@ -147,7 +147,7 @@ TEST_F(CameraTest, NothingInViewIsTheEnvironment) {
         render(still_life(glm::vec3(0)), color_environment({0.1f, 0.2f, 0.3f}), settings_for(camera, 16));
     tally(picture, camera, 1e-6, [](const ViewRay&) { return glm::dvec3(0.1f, 0.2f, 0.3f); }).expect(0, 256);
     for (const auto& p : picture.radiance) EXPECT_EQ(p.w, 0);
-    EXPECT_EQ(picture.stats.rays.secondary(), 0u);
+    EXPECT_EQ(picture.rays.secondary(), 0u);
 }
 
 TEST_F(CameraTest, BandsFitTogether) {
@@ -205,7 +205,7 @@ TEST_F(CameraTest, TheSamePictureTwice) {
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);
     EXPECT_EQ(first.encoded, again.encoded);
-    EXPECT_EQ(first.stats.rays.secondary(), again.stats.rays.secondary());
+    EXPECT_EQ(first.rays.secondary(), again.stats.rays.secondary());
 }
 
 TEST_F(CameraTest, RepeatedFramesChangeNothing) {
@@ -214,7 +214,7 @@ TEST_F(CameraTest, RepeatedFramesChangeNothing) {
     settings.repeat = 3;
     const RenderResult thrice = render(everything(), white, settings);
     EXPECT_EQ(tally(once, thrice, 0).wrong, 0u);
-    EXPECT_EQ(once.stats.rays.secondary(), thrice.stats.rays.secondary());
+    EXPECT_EQ(once.rays.secondary(), thrice.stats.rays.secondary());
 }
 
 TEST_F(CameraTest, SamplesAverageTheEdge) {
@@ -238,7 +238,7 @@ TEST_F(CameraTest, SamplesAverageTheEdge) {
                        [&] { return fmt::format("pixel {},{}: {:.4f}, expected {:.4f}", x, y, got.x, coverage); });
         }
     result.expect(0, 256);
-    EXPECT_EQ(picture.stats.rays.primary, 256u * 128u);
+    EXPECT_EQ(picture.rays.primary, 256u * 128u);
 }
 
 }  // namespace

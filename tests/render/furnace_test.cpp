@@ -160,7 +160,7 @@ TEST_F(FurnaceTest, AmbientRaysKnowAPit) {
     const RenderResult occluded = render(stage, white, settings);
     EXPECT_NEAR(mean(occluded, open), 1, 0.01);
     EXPECT_NEAR(mean(occluded, middle), 0.2, 0.03);
-    EXPECT_GE(occluded.stats.rays.ambient, 40u * 40u * 48u);
+    EXPECT_GE(occluded.rays.ambient, 40u * 40u * 48u);
 }
 
 }  // namespace

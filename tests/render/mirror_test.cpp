@@ -67,7 +67,7 @@ TEST_F(MirrorTest, ShowsTheMirroredScene) {
     const RenderResult direct = render(world(true), marked_environment(true), settings);
     // Only silhouettes may differ: there a rounding decides what a pixel sees.
     tally(in_mirror, direct, 2e-3).expect(0.01, 128 * 128);
-    EXPECT_GE(in_mirror.stats.rays.reflection, 128u * 128u);
+    EXPECT_GE(in_mirror.rays.reflection, 128u * 128u);
 
     // The comparison sees the lamp's shadows: without them it must fail.
     settings.shadow = false;

@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "scene/picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,37 +7,43 @@
 
 namespace peelray {
 
-void describe_camera(Frame& frame, const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {
-    const glm::dvec3 eye = camera.eye, view = glm::dvec3(camera.look) - eye;
+glm::vec2 sample_position(uint32_t index) {
+    const double x = 0.5 + index * 0.7548776662466927, y = 0.5 + index * 0.5698402909980532;
+    return {float(x - std::floor(x)), float(y - std::floor(y))};
+}
+
+View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {
+    const glm::dvec3 eye = camera.eye, look = glm::dvec3(camera.look) - eye;
     const auto finite = [](const glm::dvec3& v) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };
-    if (!finite(eye) || !finite(view) || !finite(glm::dvec3(camera.up)))
+    if (!finite(eye) || !finite(look) || !finite(glm::dvec3(camera.up)))
         fail("the camera's position is not finite: check --eye, --look and --up");
-    if (glm::length(view) == 0) fail("the camera looks at itself: --eye and --look must differ");
-    const glm::dvec3 forward = glm::normalize(view);
+    if (glm::length(look) == 0) fail("the camera looks at itself: --eye and --look must differ");
+    const glm::dvec3 forward = glm::normalize(look);
     const glm::dvec3 side = glm::cross(forward, glm::dvec3(camera.up));
     if (glm::length(side) < 1e-9 * glm::length(glm::dvec3(camera.up)) || glm::length(glm::dvec3(camera.up)) == 0)
         fail("the camera looks along its up direction: choose another --up");
     const glm::dvec3 right = glm::normalize(side), up = glm::cross(right, forward);
 
+    View view;
     double half_height = camera.orthographic_height / 2;
-    frame.orthographic = camera.orthographic_height > 0;
-    if (!frame.orthographic) {
+    view.orthographic = camera.orthographic_height > 0;
+    if (!view.orthographic) {
         if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415f))
             fail("a vertical field of view of {:.1f} degrees is impossible: choose one between 0 and 180 (--fov)",
                  camera.vertical_fov * 57.29578f);
         half_height = std::tan(double(camera.vertical_fov) / 2);
     }
-    frame.eye = camera.eye;
-    frame.forward = glm::vec3(forward);
-    frame.right = glm::vec3(right * half_height * double(aspect));
-    frame.up = glm::vec3(up * half_height);
-    // Surfaces nearer than this are cut away; a tiny share of the scene, so that nobody notices.
+    view.eye = camera.eye;
+    view.forward = glm::vec3(forward);
+    view.right = glm::vec3(right * half_height * double(aspect));
+    view.up = glm::vec3(up * half_height);
     const double diagonal = glm::length(glm::dvec3(upper) - glm::dvec3(lower));
     const double away = glm::length(glm::dvec3(lower) + glm::dvec3(upper) - 2.0 * eye) / 2;
-    frame.near = float(std::max(diagonal, 1e-20) * 1e-5);
-    frame.far = float(std::max(away + diagonal, 1e-20));
+    view.near = float(std::max(diagonal, 1e-20) * 1e-5);
+    view.far = float(std::max(away + diagonal, 1e-20));
+    return view;
 }
 
 }  // namespace peelray

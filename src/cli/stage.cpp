@@ -1,0 +1,162 @@
+#include "cli/stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "image/image.h"
+
+namespace peelray {
+namespace {
+
+Environment choose_environment(const PictureArguments& a, const Scene& scene) {
+    if (!a.env.empty()) {
+        const Image image = read_hdr(a.env);
+        return image_environment(image.width, image.height, image.pixels);
+    }
+    if (a.background) return color_environment(*a.background);
+    // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
+    if (a.sky || scene.lights.empty()) return sky_environment(default_sun_direction());
+    return color_environment(glm::vec3(0.05f));
+}
+
+const Camera& find_camera(const Scene& scene, const std::string& name) {
+    if (scene.cameras.empty())
+        fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
+    std::string names;
+    for (size_t i = 0; i < scene.cameras.size(); i++) {
+        if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
+        names += fmt::format("{}{}: {}", i ? ", " : "", i,
+                             scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+    }
+    fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
+}
+
+Camera choose_camera(const PictureArguments& a, const Scene& scene, const Geometry& geometry, float aspect) {
+    Camera camera = frame_box(geometry.lower, geometry.upper, aspect);
+    if (!a.camera.empty())
+        camera = find_camera(scene, a.camera);
+    else if (!a.eye && !a.look && !scene.cameras.empty())
+        camera = scene.cameras.front();
+    if (a.eye || a.look) camera.orthographic_height = 0;
+    if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (geometry.lower + geometry.upper));
+    if (a.eye) camera.eye = *a.eye;
+    if (a.up) camera.up = *a.up;
+    if (a.fov) {
+        camera.vertical_fov = *a.fov * 3.14159265f / 180;
+        camera.orthographic_height = 0;
+    }
+    return camera;
+}
+
+/// --material: what a file without materials of its own is good for.
+void override_material(Scene& scene, const std::string& name, const Geometry& geometry) {
+    Material material;
+    material.name = name;
+    if (name == "mirror") {
+        material.base_color = glm::vec3(0.93f, 0.92f, 0.90f);
+        material.metallic = 1;
+        material.roughness = 0;
+    } else if (name == "glass") {
+        material.roughness = 0;
+        material.transmission = 1;
+        material.thickness = 1;
+        material.attenuation_color = glm::vec3(0.75f, 0.92f, 0.85f);
+        material.attenuation_distance = 0.5f * glm::length(geometry.upper - geometry.lower);
+    } else {
+        material.base_color = glm::vec3(0.62f, 0.52f, 0.44f);
+        material.roughness = 0.9f;
+    }
+    for (Material& each : scene.materials) each = material;
+}
+
+/// --floor: two triangles just below the scene.
+void add_floor(Scene& scene, Geometry& geometry) {
+    const glm::vec3 size = geometry.upper - geometry.lower, centre = 0.5f * (geometry.lower + geometry.upper);
+    const float half = 1.5f * std::max({size.x, size.y, size.z}),
+                y = geometry.lower.y - 1e-4f * std::max({size.x, size.y, size.z});
+    Material material;
+    material.name = "floor";
+    material.base_color = glm::vec3(0.35f, 0.36f, 0.38f);
+    material.roughness = 0;
+    material.ior = 1.8f;
+    scene.materials.push_back(material);
+    const uint32_t first = uint32_t(geometry.positions.size());
+    geometry.objects.push_back({uint32_t(geometry.triangles.size()), 2});
+    for (int i = 0; i < 4; i++) {
+        const glm::vec3 p(centre.x + (i == 1 || i == 2 ? half : -half), y, centre.z + (i >= 2 ? half : -half));
+        geometry.positions.push_back(p);
+        geometry.normals.push_back({0, 1, 0});
+        geometry.uvs.push_back({0, 0});
+        if (!geometry.colors.empty()) geometry.colors.push_back(glm::vec4(1));
+        geometry.lower = glm::min(geometry.lower, p);
+        geometry.upper = glm::max(geometry.upper, p);
+    }
+    for (const glm::uvec3& t : {glm::uvec3(0, 2, 1), glm::uvec3(0, 3, 2)}) {
+        geometry.triangles.push_back(t + first);
+        geometry.materials.push_back(uint32_t(scene.materials.size() - 1));
+    }
+}
+
+}  // namespace
+
+void check_ranges(const PictureArguments& a) {
+    const auto finite = [](const std::optional<glm::vec3>& vector, const char* option) {
+        if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
+            fail("{} must be three finite numbers", option);
+    };
+    if (!a.frames.empty() || a.fps || a.time.value_or(0) != 0)
+        fail("animations are not built into this version: leave --time, --frames and --fps out");
+    finite(a.eye, "--eye");
+    finite(a.look, "--look");
+    finite(a.up, "--up");
+    finite(a.background, "--background");
+    if (a.background && glm::any(glm::lessThan(*a.background, glm::vec3(0))))
+        fail("a background cannot be darker than black: choose three numbers from 0 up (--background)");
+    if (a.fov && !(*a.fov > 0 && *a.fov < 180))
+        fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
+    if (a.size.x == 0 || a.size.y == 0)
+        fail("a picture of {}x{} pixels is empty: choose at least 1x1 (--size)", a.size.x, a.size.y);
+    if (!(std::abs(a.exposure) <= 64))
+        fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
+    if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
+    if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
+    check_repeat(a.repeat);
+}
+
+RenderSettings settings_of(const PictureArguments& a) {
+    const auto has = [&](const char* effect) {
+        return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end();
+    };
+    RenderSettings settings;
+    settings.width = a.size.x;
+    settings.height = a.size.y;
+    settings.ldc = a.tracing.ldc.value_or(0);
+    settings.hit_auto = a.tracing.hit == "auto";
+    settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
+    settings.trace = a.tracing.tracer != "none";
+    settings.bounces = a.bounces;
+    settings.spp = a.spp;
+    settings.repeat = a.repeat;
+    settings.exposure = a.exposure;
+    settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
+    settings.reflection = has("reflection");
+    settings.refraction = has("refraction");
+    settings.shadow = has("shadow");
+    settings.ambient = has("ambient");
+    return settings;
+}
+
+Stage prepare_stage(const PictureArguments& a) {
+    Stage stage;
+    stage.scene = load_scene(a.scene);
+    stage.geometry = visible_geometry(stage.scene);
+    stage.camera = choose_camera(a, stage.scene, stage.geometry, float(a.size.x) / float(a.size.y));
+    if (!a.material.empty()) override_material(stage.scene, a.material, stage.geometry);
+    if (a.floor) add_floor(stage.scene, stage.geometry);
+    stage.environment = choose_environment(a, stage.scene);
+    return stage;
+}
+
+}  // namespace peelray

@@ -1,0 +1,23 @@
+// From picture arguments to what every tracer renders: scene, triangles, camera, light.
+#pragma once
+
+#include "cli/program.h"
+#include "scene/environment.h"
+
+namespace peelray {
+
+struct Stage {
+    Scene scene;
+    Geometry geometry;
+    Camera camera;
+    Environment environment;
+};
+
+/// Throws Error for values that are well-formed but make no sense.
+void check_ranges(const PictureArguments& arguments);
+/// The settings without the camera.
+RenderSettings settings_of(const PictureArguments& arguments);
+/// Loads the scene and applies --material, --floor, the camera and the light. Throws Error.
+Stage prepare_stage(const PictureArguments& arguments);
+
+}  // namespace peelray

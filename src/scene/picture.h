@@ -1,0 +1,66 @@
+// A picture of a scene: what it is to look like, and what comes out. Shared by every tracer; no GPU in sight.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+enum class Tonemap : uint8_t { none, aces, neutral };
+
+/// What a picture is to look like, whoever makes it. Defaults are those of the command line.
+struct PictureSettings {
+    uint32_t width = 1280, height = 1024;  ///< pixels
+    Camera camera;
+    uint32_t bounces = 4;                                      ///< secondary rays in a row, 0 to 16
+    uint32_t spp = 1;                                          ///< samples per pixel, at least 1
+    bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
+    bool ambient = false;  ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
+    float exposure = 0;    ///< stops; applies to the encoded picture only
+    Tonemap tonemap = Tonemap::neutral;
+    bool aovs = false;  ///< also the auxiliary pictures
+};
+
+/// Auxiliary pictures at the pixel centres; width·height entries each, row 0 at the top.
+struct Aovs {
+    std::vector<float> depth;                         ///< distance along the camera ray, world units; +inf: nothing
+    std::vector<float> triangle, material;            ///< index; -1: nothing
+    std::vector<glm::vec4> normal, albedo, position;  ///< world space; w: 1 where there is a surface (normal: 0)
+};
+
+struct RayCounts {
+    uint64_t primary = 0, reflection = 0, refraction = 0, shadow = 0, ambient = 0;
+    uint64_t secondary() const { return reflection + refraction + shadow + ambient; }
+};
+
+struct Picture {
+    uint32_t width = 0, height = 0;
+    /// Linear, mean over the samples, before exposure; alpha: share of samples with a surface.
+    std::vector<glm::vec4> radiance;
+    std::vector<uint32_t> encoded;  ///< exposed, tone-mapped, 8-bit sRGB, red in the lowest byte
+    Aovs aovs;
+    RayCounts rays;
+};
+
+/// Where sample `index` lies in its pixel, [0, 1)²: the R2 sequence (Roberts 2018), whose first member is the centre; any
+/// prefix of it is spread evenly.
+glm::vec2 sample_position(uint32_t index);
+
+/// A camera's rays: through the picture position (x, y), pixels from the top left, the ray
+/// `forward + right·(2x/width - 1) + up·(1 - 2y/height)` from the eye; orthographic: along `forward` from the eye moved
+/// likewise. In single precision, so that every tracer looks through the same camera.
+struct View {
+    glm::vec3 eye, right, up, forward;  ///< right and up have half the picture's size at distance 1; forward is unit
+    bool orthographic = false;
+    float near = 0;  ///< nearer surfaces may be cut away: a tiny share of the scene
+    float far = 0;   ///< nothing of the scene lies beyond
+};
+
+/// `lower`, `upper`: the scene's box. Throws Error for a view without direction (eye = look, up along the view, a field
+/// of view outside (0°, 180°)), naming the option.
+View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper);
+
+}  // namespace peelray
