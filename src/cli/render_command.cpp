@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/progress.h"
-#include "cli/stage.h"
+#include "base/interrupt.h"
+#include "cli/picture_maker.h"
 #include "cli/stats.h"
 #include "image/image.h"
 
@@ -32,7 +32,7 @@ fs::path aov_path(const fs::path& output, const std::string& name) {
     return path.replace_extension(name + ".exr");
 }
 
-void write_aovs(const RenderResult& result, const std::vector<std::string>& names, const fs::path& output) {
+void write_aovs(const Picture& result, const std::vector<std::string>& names, const fs::path& output) {
     const Aovs& a = result.aovs;
     const auto component = [](const std::vector<glm::vec4>& values, int i) {
         std::vector<float> channel;
@@ -57,7 +57,7 @@ void write_aovs(const RenderResult& result, const std::vector<std::string>& name
     }
 }
 
-void write_picture(const RenderResult& result, const fs::path& path) {
+void write_picture(const Picture& result, const fs::path& path) {
     if (format_of(path) == Format::png)
         write_png(path, Image8{result.width, result.height, result.encoded});
     else
@@ -65,15 +65,13 @@ void write_picture(const RenderResult& result, const fs::path& path) {
 }
 
 /// What a reader of the terminal wants to know, once.
-void report(const RenderArguments& a, const RenderResult& result, size_t triangles, const Device& device,
-            double seconds) {
-    const RenderStats& s = result.stats;
-    const double rays = double(result.rays.primary + result.rays.secondary());
-    fmt::print("{}: {}x{}, {} triangles, {}", a.output.string(), result.width, result.height, triangles,
-               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6));
-    if (s.ldc) fmt::print(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
-    if (s.timed) fmt::print("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
-    fmt::print("; {:.2f} s in all on {}\n", seconds, device.info().name);
+void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
+    const Picture& picture = made.picture;
+    const double rays = double(picture.rays.primary + picture.rays.secondary());
+    fmt::print("{}: {}x{}, {} triangles, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width,
+               picture.height, triangles,
+               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6), made.summary,
+               seconds, made.device);
 }
 
 }  // namespace
@@ -83,26 +81,23 @@ void run_render(const RenderArguments& a) {
     a.tracing.check();
     check_ranges(a);
     format_of(a.output);
+    if (a.tracing.tracer == "reference" && a.repeat > 1)
+        fail("--repeat measures GPU frames; with --tracer reference leave it out");
     RenderSettings settings = settings_of(a);
+    settings.aovs = !a.aovs.empty();
     std::vector<fs::path> outputs = {a.output};
     for (const std::string& name : a.aovs) outputs.push_back(aov_path(a.output, name));
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
-    const Stage stage = prepare_stage(a);
-    settings.camera = stage.camera;
-    settings.aovs = !a.aovs.empty();
-
-    Device device({a.device.device, a.device.validate});
-    Renderer renderer(device, stage.scene, stage.geometry, stage.environment);
-    Progress progress("rendering", 1);
-    const RenderResult result = renderer.render(settings, [&](double share) { progress.update(share); });
-    device.check_validation();
-    write_picture(result, a.output);
-    write_aovs(result, a.aovs, a.output);
-    if (!a.stats.empty()) write_json(a.stats, render_stats(device, result, stage.geometry));
+    const PreparedScene scene = prepare_scene(a);
+    watch_interrupts();
+    const MadePicture made = PictureMaker(scene, a.device).make(a.tracing.tracer, settings);
+    write_picture(made.picture, a.output);
+    write_aovs(made.picture, a.aovs, a.output);
+    if (!a.stats.empty()) write_json(a.stats, made.stats);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    report(a, result, stage.geometry.triangles.size(), device, seconds);
+    report(a, made, scene.geometry.triangles.size(), seconds);
 }
 
 }  // namespace peelray

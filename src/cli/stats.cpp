@@ -38,9 +38,18 @@ Json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolu
             {"triangles_not_finite", counts.invalid}};
 }
 
+Json ray_stats(const RayCounts& rays) {
+    return {{"primary", rays.primary},
+            {"reflection", rays.reflection},
+            {"refraction", rays.refraction},
+            {"shadow", rays.shadow},
+            {"ambient", rays.ambient}};
+}
+
 Json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry) {
     const RenderStats& s = result.stats;
-    Json json = device_stats(device);
+    Json json = {{"tracer", s.ldc ? "ldc" : "none"}};
+    json.update(device_stats(device));
     json["image"] = {result.width, result.height};
     json["triangles"] = geometry.triangles.size();
     json["timed"] = s.timed;
@@ -53,13 +62,10 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
         if (pass.name == "shadow") shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
-    json["rays"] = {{"primary", result.rays.primary},
-                    {"reflection", result.rays.reflection},
-                    {"refraction", result.rays.refraction},
-                    {"shadow", result.rays.shadow},
-                    {"ambient", result.rays.ambient}};
-    json["mrays_per_second"] = {{"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
-                                {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
+    json["rays"] = ray_stats(result.rays);
+    json["mrays_per_second"] = {
+        {"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
+        {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
     if (s.ldc)
         json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes,
                                  s.hit == HitTest::exact ? "conservative" : "centre");

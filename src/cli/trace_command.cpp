@@ -86,6 +86,7 @@ nlohmann::ordered_json trace_stats(const Device& device, const Geometry& geometr
 
 void run_trace(const TraceArguments& a) {
     a.tracing.check();
+    if (a.tracing.tracer != "ldc") fail("--tracer {} traces no rays from files: use --tracer ldc", a.tracing.tracer);
     check_repeat(a.repeat);
     std::vector<std::filesystem::path> outputs = {a.hits};
     if (!a.stats.empty()) outputs.push_back(a.stats);

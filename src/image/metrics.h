@@ -11,9 +11,10 @@ namespace peelray {
 /// Peak signal-to-noise ratio of the encoded pictures, dB, over all pixels and the three channels; +inf: equal.
 double psnr(const Image8& reference, const Image8& test);
 
-/// Structural similarity of the luma of the encoded pictures, in [-1, 1], 1: equal (Wang et al., "Image Quality Assessment:
-/// From Error Visibility to Structural Similarity", 2004): Gaussian window of 11×11 pixels, sigma 1.5, K1 0.01, K2 0.03; the
-/// mean over all window positions inside the picture (pictures smaller than a window: one window over all of it).
+/// Structural similarity of the luma of the encoded pictures, in [-1, 1], 1: equal (Wang et al., "Image Quality
+/// Assessment: From Error Visibility to Structural Similarity", 2004): Gaussian window of 11×11 pixels, sigma 1.5, K1
+/// 0.01, K2 0.03; the mean over all window positions inside the picture (pictures smaller than a window: one window
+/// over all of it).
 double ssim(const Image8& reference, const Image8& test);
 
 /// Share of the pixels, [0, 1], of which a channel differs by more than 1/255.
@@ -29,7 +30,8 @@ struct ErrorMap {
 /// Pixels per degree of visual angle that FLIP assumes by default: a 0.7 m wide monitor of 3840 pixels at 0.7 m.
 double default_pixels_per_degree();
 
-/// LDR-FLIP (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020) of sRGB-encoded pictures.
+/// LDR-FLIP (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020) of sRGB-encoded
+/// pictures.
 ErrorMap flip(const Image8& reference, const Image8& test, double pixels_per_degree = default_pixels_per_degree());
 
 /// The exposures, in stops, between which HDR-FLIP compares.
@@ -39,9 +41,9 @@ struct ExposureRange {
 /// Those that the reference asks for (Andersson et al. 2021, section on automatic exposures, tone curve ACES).
 ExposureRange flip_exposures(const Image& reference);
 
-/// HDR-FLIP (Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021): the largest
-/// LDR-FLIP per pixel over exposures from `range.start` to `range.stop` (default: flip_exposures()) in steps of about a stop,
-/// each tone-mapped with ACES. Linear Rec. 709 pictures; alpha is ignored.
+/// HDR-FLIP (Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021): the
+/// largest LDR-FLIP per pixel over exposures from `range.start` to `range.stop` (default: flip_exposures()) in steps of
+/// about a stop, each tone-mapped with ACES. Linear Rec. 709 pictures; alpha is ignored.
 ErrorMap hdr_flip(const Image& reference, const Image& test, double pixels_per_degree = default_pixels_per_degree(),
                   std::optional<ExposureRange> range = std::nullopt);
 
@@ -51,9 +53,10 @@ Image8 colorize(const ErrorMap& map);
 /// All of it for two pictures of the same scene.
 struct Difference {
     double psnr = 0, ssim = 1, flip = 0, hdr_flip = 0;  ///< flip, hdr_flip: means
-    double different = 0;                                ///< share_different()
-    ErrorMap map;                                        ///< of LDR-FLIP
+    double different = 0;                               ///< share_different()
+    ErrorMap map;                                       ///< of LDR-FLIP
 };
-Difference compare(const Image8& reference, const Image8& test, const Image& reference_radiance, const Image& test_radiance);
+Difference compare(const Image8& reference, const Image8& test, const Image& reference_radiance,
+                   const Image& test_radiance);
 
 }  // namespace peelray

@@ -14,10 +14,10 @@ namespace peelray {
 using ReportFact = std::pair<std::string, std::string>;
 
 struct ReportPicture {
-    std::string name;               ///< "cubemap", "ldc exact", "reference": unique in the report
-    std::string command;            ///< what makes this picture again, one line
-    Image8 picture;                 ///< as encoded for a display
-    std::vector<ReportFact> facts;  ///< how it was made: times, rays, memory
+    std::string name;                      ///< "cubemap", "ldc exact", "reference": unique in the report
+    std::string command;                   ///< what makes this picture again, one line
+    Image8 picture;                        ///< as encoded for a display
+    std::vector<ReportFact> facts;         ///< how it was made: times, rays, memory
     std::optional<Difference> difference;  ///< from the report's reference; none: this is the reference
 };
 
@@ -30,8 +30,8 @@ struct Report {
     std::string command;                  ///< what makes this report again
 };
 
-/// Writes the report to `path` (atomically). Any text may hold any characters; they are escaped. Throws Error if unwritable
-/// or if pictures differ in size.
+/// Writes the report to `path` (atomically). Any text may hold any characters; they are escaped. Throws Error if
+/// unwritable or if pictures differ in size.
 void write_report(const std::filesystem::path& path, const Report& report);
 
 }  // namespace peelray

@@ -186,7 +186,8 @@ void Renderer::Impl::record_visibility(uint32_t sample) {
     commands.draw(
         device.raster_pass("visibility"),
         {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
-        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, visibility_image, depth_image, visibility);
+        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, visibility_image, depth_image,
+        visibility);
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {

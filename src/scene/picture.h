@@ -45,8 +45,8 @@ struct Picture {
     RayCounts rays;
 };
 
-/// Where sample `index` lies in its pixel, [0, 1)²: the R2 sequence (Roberts 2018), whose first member is the centre; any
-/// prefix of it is spread evenly.
+/// Where sample `index` lies in its pixel, [0, 1)²: the R2 sequence (Roberts 2018), whose first member is the centre;
+/// any prefix of it is spread evenly.
 glm::vec2 sample_position(uint32_t index);
 
 /// A camera's rays: through the picture position (x, y), pixels from the top left, the ray

@@ -1,4 +1,4 @@
-#include "cli/stage.h"
+#include "cli/prepare.h"
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +135,6 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.ldc = a.tracing.ldc.value_or(0);
     settings.hit_auto = a.tracing.hit == "auto";
     settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
-    settings.trace = a.tracing.tracer != "none";
     settings.bounces = a.bounces;
     settings.spp = a.spp;
     settings.repeat = a.repeat;
@@ -148,15 +147,15 @@ RenderSettings settings_of(const PictureArguments& a) {
     return settings;
 }
 
-Stage prepare_stage(const PictureArguments& a) {
-    Stage stage;
-    stage.scene = load_scene(a.scene);
-    stage.geometry = visible_geometry(stage.scene);
-    stage.camera = choose_camera(a, stage.scene, stage.geometry, float(a.size.x) / float(a.size.y));
-    if (!a.material.empty()) override_material(stage.scene, a.material, stage.geometry);
-    if (a.floor) add_floor(stage.scene, stage.geometry);
-    stage.environment = choose_environment(a, stage.scene);
-    return stage;
+PreparedScene prepare_scene(const PictureArguments& a) {
+    PreparedScene scene;
+    scene.scene = load_scene(a.scene);
+    scene.geometry = visible_geometry(scene.scene);
+    scene.camera = choose_camera(a, scene.scene, scene.geometry, float(a.size.x) / float(a.size.y));
+    if (!a.material.empty()) override_material(scene.scene, a.material, scene.geometry);
+    if (a.floor) add_floor(scene.scene, scene.geometry);
+    scene.environment = choose_environment(a, scene.scene);
+    return scene;
 }
 
 }  // namespace peelray

@@ -6,7 +6,7 @@
 
 namespace peelray {
 
-struct Stage {
+struct PreparedScene {
     Scene scene;
     Geometry geometry;
     Camera camera;
@@ -15,9 +15,9 @@ struct Stage {
 
 /// Throws Error for values that are well-formed but make no sense.
 void check_ranges(const PictureArguments& arguments);
-/// The settings without the camera.
+/// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);
 /// Loads the scene and applies --material, --floor, the camera and the light. Throws Error.
-Stage prepare_stage(const PictureArguments& arguments);
+PreparedScene prepare_scene(const PictureArguments& arguments);
 
 }  // namespace peelray

@@ -1,0 +1,12 @@
+// Ctrl-C during long work: it ends at the next convenient place, tidied up and with one line.
+#pragma once
+
+namespace peelray {
+
+/// From now on the first SIGINT or SIGTERM is remembered instead of ending the process; a second one ends it at once.
+void watch_interrupts();
+
+/// Throws Error if a signal came since watch_interrupts(). Long work calls it between its steps.
+void check_interrupt();
+
+}  // namespace peelray

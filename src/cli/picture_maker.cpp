@@ -1,0 +1,59 @@
+#include "cli/picture_maker.h"
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "cli/stats.h"
+#ifdef PEELRAY_WITH_REFERENCE
+#include "cli/reference_picture.h"
+#endif
+
+namespace peelray {
+
+PictureMaker::PictureMaker(const PreparedScene& scene, const DeviceArguments& device)
+    : scene_(scene), arguments_(device) {}
+
+PictureMaker::~PictureMaker() = default;
+
+MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings) {
+    settings.camera = scene_.camera;
+    if (tracer == "reference") return make_reference(settings);
+    settings.trace = tracer != "none";
+    return make_on_gpu(settings);
+}
+
+MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
+    if (!device_) {
+        device_ = std::make_unique<Device>(DeviceOptions{arguments_.device, arguments_.validate});
+        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene, scene_.geometry, scene_.environment);
+    }
+    Progress progress("rendering", 1);
+    RenderResult result = renderer_->render(settings, [&](double share) {
+        check_interrupt();
+        progress.update(share);
+    });
+    device_->check_validation();
+    MadePicture made;
+    const RenderStats& s = result.stats;
+    made.stats = render_stats(*device_, result, scene_.geometry);
+    made.device = device_->info().name;
+    if (s.ldc) made.summary = fmt::format(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
+    if (s.timed) made.summary += fmt::format("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
+    made.picture = std::move(result);
+    return made;
+}
+
+MadePicture PictureMaker::make_reference(const RenderSettings& settings) {
+#ifdef PEELRAY_WITH_REFERENCE
+    Progress progress("ray tracing", 1);
+    return reference_picture(scene_, settings, [&](double share) {
+        check_interrupt();
+        progress.update(share);
+    });
+#else
+    (void)settings;
+    fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use --tracer ldc");
+#endif
+}
+
+}  // namespace peelray

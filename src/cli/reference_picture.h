@@ -1,0 +1,13 @@
+// --tracer reference: the CPU's picture and its stats. Not built without Embree (PEELRAY_REFERENCE=OFF).
+#pragma once
+
+#include <functional>
+
+#include "cli/picture_maker.h"
+
+namespace peelray {
+
+MadePicture reference_picture(const PreparedScene& scene, const PictureSettings& settings,
+                              const std::function<void(double)>& progress);
+
+}  // namespace peelray

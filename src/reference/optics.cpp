@@ -1,0 +1,129 @@
+#include "reference/optics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace peelray::optics {
+
+double fresnel_dielectric(double cosine, double eta) {
+    const double sine_behind = std::sqrt(std::max(0.0, 1 - cosine * cosine)) / eta;
+    if (sine_behind >= 1) return 1;
+    const double cosine_behind = std::sqrt(1 - sine_behind * sine_behind);
+    const double s = (cosine - eta * cosine_behind) / (cosine + eta * cosine_behind);
+    const double p = (eta * cosine - cosine_behind) / (eta * cosine + cosine_behind);
+    return (s * s + p * p) / 2;
+}
+
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double cosine) {
+    return f0 + (1.0 - f0) * std::pow(std::clamp(1 - cosine, 0.0, 1.0), 5);
+}
+
+std::optional<glm::dvec3> refract_ray(const glm::dvec3& incoming, const glm::dvec3& normal, double eta) {
+    // The part along the surface shrinks by the index; what is left of the unit length goes into the surface.
+    const glm::dvec3 along = (incoming - glm::dot(incoming, normal) * normal) / eta;
+    const double into2 = 1 - glm::dot(along, along);
+    if (into2 < 0) return std::nullopt;
+    return glm::normalize(along - std::sqrt(into2) * normal);
+}
+
+glm::dvec3 visible_normal(const glm::dvec3& normal, const glm::dvec3& geometric, const glm::dvec3& to_viewer) {
+    const double cosine = glm::dot(normal, to_viewer);
+    if (cosine >= 1e-3) return normal;
+    const glm::dvec3 bent = normal + to_viewer * (1e-3 - cosine);
+    return glm::dot(bent, bent) > 1e-12 ? glm::normalize(bent) : geometric;
+}
+
+glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometric) {
+    const double height = glm::dot(direction, geometric);
+    return height >= 1e-3 ? direction : glm::normalize(direction + geometric * (1e-3 - height));
+}
+
+glm::dvec3 environment_brdf(const glm::dvec3& f0, double roughness, double cosine) {
+    const double x = 1 - roughness, y = 0.0425 - 0.0275 * roughness;
+    const double z = 1.04 - 0.572 * roughness, w = -0.04 + 0.022 * roughness;
+    const double a = std::min(x * x, std::exp2(-9.28 * cosine)) * x + y;
+    return glm::clamp(f0 * (z - 1.04 * a) + (w + 1.04 * a), 0.0, 1.0);
+}
+
+double ggx_distribution(double n_h, double alpha) {
+    const double a2 = alpha * alpha, k = n_h * n_h * (a2 - 1) + 1;
+    return a2 / (pi * k * k);
+}
+
+double ggx_masking(double cosine, double alpha) {
+    const double a2 = alpha * alpha;
+    return 2 * cosine / (cosine + std::sqrt(a2 + (1 - a2) * cosine * cosine));
+}
+
+glm::dvec3 sample_ggx(const glm::dvec3& view, double alpha, const glm::dvec2& random) {
+    // The hemisphere's visible disc is warped as the stretched view sees it, then unstretched.
+    const glm::dvec3 v = glm::normalize(glm::dvec3(alpha * view.x, alpha * view.y, view.z));
+    const double flat = std::hypot(v.x, v.y);
+    const glm::dvec3 t1 = flat > 0 ? glm::dvec3(-v.y, v.x, 0) / flat : glm::dvec3(1, 0, 0), t2 = glm::cross(v, t1);
+    const double r = std::sqrt(random.x), phi = 2 * pi * random.y, s = (1 + v.z) / 2;
+    const double p1 = r * std::cos(phi);
+    const double p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * r * std::sin(phi);
+    const glm::dvec3 n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2)) * v;
+    return glm::normalize(glm::dvec3(alpha * n.x, alpha * n.y, std::max(1e-6, n.z)));
+}
+
+Tangents tangents(const glm::dvec3& n) {
+    const double s = n.z >= 0 ? 1 : -1, a = -1 / (s + n.z), c = n.x * n.y * a;
+    return {{1 + s * n.x * n.x * a, s * c, -s * n.x}, {c, s + n.y * n.y * a, -n.y}};
+}
+
+glm::uvec3 hash3(glm::uvec3 v) {
+    const auto mix = [&] {
+        v.x += v.y * v.z;
+        v.y += v.z * v.x;
+        v.z += v.x * v.y;
+    };
+    v = v * 1664525u + 1013904223u;
+    mix();
+    v ^= v >> 16u;
+    mix();
+    return v;
+}
+
+glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose) {
+    const glm::uvec3 h = hash3({seed, uint32_t(purpose), 0x9e3779b9u});
+    // R2: 2^32 over the plastic number and its square.
+    const uint32_t x = h.x + 3242174889u * index, y = h.y + 2447445414u * index;
+    return glm::dvec2(x >> 8, y >> 8) / 16777216.0;
+}
+
+double srgb_to_linear(double c) {
+    return c > 0.04045 ? std::pow((c + 0.055) / 1.055, 2.4) : c / 12.92;
+}
+
+double linear_to_srgb(double c) {
+    return c > 0.0031308 ? 1.055 * std::pow(c, 1 / 2.4) - 0.055 : c * 12.92;
+}
+
+namespace {
+
+/// Narkowicz, "ACES filmic tone mapping curve", 2015.
+glm::dvec3 aces(const glm::dvec3& c) {
+    return (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14);
+}
+
+/// Khronos PBR neutral tone mapper, 2024.
+glm::dvec3 neutral(glm::dvec3 c) {
+    const double darkest = std::min({c.x, c.y, c.z});
+    c -= darkest < 0.08 ? darkest - 6.25 * darkest * darkest : 0.04;
+    const double peak = largest(c), start = 0.76, room = 1 - start;
+    if (peak < start) return c;
+    const double compressed = 1 - room * room / (peak + room - start);
+    const double white = 1 - 1 / (0.15 * (peak - compressed) + 1);
+    return glm::mix(c * (compressed / peak), glm::dvec3(compressed), white);
+}
+
+}  // namespace
+
+glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap) {
+    if (tonemap == Tonemap::aces) color = aces(color);
+    if (tonemap == Tonemap::neutral) color = neutral(color);
+    return glm::clamp(color, 0.0, 1.0);
+}
+
+}  // namespace peelray::optics

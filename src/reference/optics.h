@@ -1,0 +1,62 @@
+// What light does at a surface, in double precision: Fresnel, Snell, microfacets, random numbers, tone curves. The
+// rules are those of shaders/shading.glsl; the arithmetic is written anew, so that each checks the other. Private to
+// src/reference.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "scene/picture.h"
+
+namespace peelray::optics {
+
+inline constexpr double pi = 3.14159265358979323846;
+/// Perceptual roughness below which a surface is a mirror.
+inline constexpr double mirror_roughness = 0.05;
+
+inline double largest(const glm::dvec3& c) {
+    return std::max(c.x, std::max(c.y, c.z));
+}
+/// Normal-incidence reflectance of a dielectric with this index of refraction in air.
+inline double normal_reflectance(double ior) {
+    return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
+}
+
+/// Unpolarised reflectance of a dielectric interface; `cosine` ≥ 0 to the normal on the incoming side, `eta`: index
+/// behind it over index before it. 1 at total internal reflection.
+double fresnel_dielectric(double cosine, double eta);
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double cosine);
+/// Snell's law; nothing at total internal reflection. All unit; `incoming` goes towards the surface, against `normal`.
+std::optional<glm::dvec3> refract_ray(const glm::dvec3& incoming, const glm::dvec3& normal, double eta);
+
+/// A normal that the viewer would see from behind is bent until it is just visible.
+glm::dvec3 visible_normal(const glm::dvec3& normal, const glm::dvec3& geometric, const glm::dvec3& to_viewer);
+/// A direction that would enter the surface is lifted to just above it.
+glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometric);
+
+/// Split-sum reflectance of GGX under white light (Karis, "Physically Based Shading on Mobile", 2014), at most 1.
+glm::dvec3 environment_brdf(const glm::dvec3& f0, double roughness, double cosine);
+double ggx_distribution(double n_h, double alpha);
+/// Smith's masking of one direction.
+double ggx_masking(double cosine, double alpha);
+/// A visible normal (Heitz, JCGT 2018); `view` and the result in the frame whose z is the surface's normal.
+glm::dvec3 sample_ggx(const glm::dvec3& view, double alpha, const glm::dvec2& random);
+
+struct Tangents {
+    glm::dvec3 t, b;
+};
+/// Duff et al., JCGT 2017.
+Tangents tangents(const glm::dvec3& n);
+
+/// pcg3d (Jarzynski, Olano, JCGT 2020): bit for bit the GPU's.
+glm::uvec3 hash3(glm::uvec3 v);
+enum class Purpose : uint32_t { microfacet = 1, sky = 2 };
+/// Sample `index` at a place of the tree of rays, [0, 1)²: bit for bit the GPU's.
+glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose);
+
+double srgb_to_linear(double encoded);
+double linear_to_srgb(double linear);
+/// Exposed linear light to [0, 1].
+glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap);
+
+}  // namespace peelray::optics

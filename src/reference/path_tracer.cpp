@@ -1,0 +1,189 @@
+#include "reference/path_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "base/error.h"
+#include "reference/optics.h"
+#include "reference/shader.h"
+
+namespace peelray {
+namespace {
+
+constexpr uint32_t tile_size = 16;
+
+/// Tiles of a picture, handed out to threads.
+struct Tiles {
+    uint32_t columns, rows;
+    std::atomic<uint32_t> next{0};
+    std::atomic<bool> stop{false};
+
+    explicit Tiles(const PictureSettings& s)
+        : columns((s.width + tile_size - 1) / tile_size), rows((s.height + tile_size - 1) / tile_size) {}
+    uint32_t count() const { return columns * rows; }
+};
+
+void check_settings(const PictureSettings& s) {
+    if (s.width < 1 || s.height < 1 || s.width > 65536 || s.height > 65536)
+        fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 (--size)", s.width, s.height);
+    if (s.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", s.bounces);
+    if (s.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+}
+
+Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x, uint32_t y, const glm::vec2& sample) {
+    const glm::dvec2 p = glm::dvec2(x, y) + glm::dvec2(sample);
+    const glm::dvec3 offset =
+        glm::dvec3(view.right) * (2 * p.x / s.width - 1) + glm::dvec3(view.up) * (1 - 2 * p.y / s.height);
+    Shader::Path path;
+    path.origin = glm::dvec3(view.eye) + (view.orthographic ? offset : glm::dvec3(0));
+    path.direction = glm::normalize(glm::dvec3(view.forward) + (view.orthographic ? glm::dvec3(0) : offset));
+    path.seed = optics::hash3({x, y, 0}).x;
+    return path;
+}
+
+uint32_t encode(const glm::dvec3& radiance, double scale, Tonemap tonemap) {
+    const glm::dvec3 color = optics::tone_curve(radiance * scale, tonemap);
+    uint32_t encoded = 0xff000000u;
+    for (int i = 0; i < 3; i++) encoded |= uint32_t(std::lround(optics::linear_to_srgb(color[i]) * 255)) << (8 * i);
+    return encoded;
+}
+
+void prepare(Picture& picture, const PictureSettings& s) {
+    const size_t pixels = size_t(s.width) * s.height;
+    picture.width = s.width;
+    picture.height = s.height;
+    picture.radiance.resize(pixels);
+    picture.encoded.resize(pixels);
+    picture.rays.primary = uint64_t(pixels) * s.spp;
+    if (!s.aovs) return;
+    Aovs& a = picture.aovs;
+    a.depth.assign(pixels, std::numeric_limits<float>::infinity());
+    a.triangle.assign(pixels, -1);
+    a.material.assign(pixels, -1);
+    a.normal.assign(pixels, glm::vec4(0));
+    a.albedo = a.position = a.normal;
+}
+
+}  // namespace
+
+struct PathTracer::Impl {
+    const Geometry& geometry;
+    Bvh bvh;
+    Surfaces surfaces;
+    Surroundings surroundings;
+    std::vector<Light> lights;
+
+    Impl(const Scene& scene, const Geometry& geometry, const Environment& environment)
+        : geometry(geometry),
+          bvh(geometry),
+          surfaces(scene, geometry),
+          surroundings(environment),
+          lights(scene.lights) {
+        lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
+    }
+
+    void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit) const;
+    void pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
+               RayCounts& rays) const;
+    RayCounts work(Picture& picture, const RenderContext& context, const View& view, Tiles& tiles,
+                   const std::function<void(double)>& progress) const;
+};
+
+void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit) const {
+    const Surface s = surfaces.at(hit.triangle, hit.u, hit.v, path.direction);
+    Aovs& a = picture.aovs;
+    a.depth[at] = float(hit.t);
+    a.triangle[at] = float(hit.triangle);
+    a.material[at] = float(s.material);
+    a.normal[at] = glm::vec4(s.normal, 0);
+    a.albedo[at] = glm::vec4(s.base_color, 1);
+    a.position[at] = glm::vec4(s.position, 1);
+}
+
+void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
+                             RayCounts& rays) const {
+    const PictureSettings& s = context.settings;
+    const size_t at = size_t(y) * s.width + x;
+    glm::dvec4 sum(0);
+    for (uint32_t sample = 0; sample < s.spp; sample++) {
+        const Shader::Path path = camera_path(view, s, x, y, sample_position(sample));
+        Shader shader(context, sample);
+        const OracleHit hit = shader.hit(path);
+        const glm::dvec3 radiance = shader.radiance(path, hit);
+        // One bad number must not poison a pixel.
+        bool usable = true;
+        for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
+        sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
+        if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit);
+        rays.reflection += shader.rays().reflection;
+        rays.refraction += shader.rays().refraction;
+        rays.shadow += shader.rays().shadow;
+        rays.ambient += shader.rays().ambient;
+    }
+    sum /= double(s.spp);
+    picture.radiance[at] = glm::vec4(sum);
+    picture.encoded[at] = encode(glm::dvec3(sum), std::exp2(double(s.exposure)), s.tonemap);
+}
+
+/// One thread's share: tiles until there are none left.
+RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context, const View& view, Tiles& tiles,
+                                 const std::function<void(double)>& progress) const {
+    RayCounts rays;
+    for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
+        const uint32_t left = tile % tiles.columns * tile_size, top = tile / tiles.columns * tile_size;
+        for (uint32_t y = top; y < std::min(top + tile_size, picture.height); y++)
+            for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
+                pixel(picture, context, view, x, y, rays);
+        if (progress) progress(double(tile) / tiles.count());
+    }
+    return rays;
+}
+
+PathTracer::PathTracer(const Scene& scene, const Geometry& geometry, const Environment& environment)
+    : impl_(std::make_unique<Impl>(scene, geometry, environment)) {}
+
+PathTracer::~PathTracer() = default;
+
+std::string PathTracer::version() {
+    return "Embree " RTC_VERSION_STRING;
+}
+
+Picture PathTracer::render(const PictureSettings& settings, const std::function<void(double)>& progress,
+                           unsigned threads) const {
+    check_settings(settings);
+    const float aspect = float(settings.width) / float(settings.height);
+    const View view = make_view(settings.camera, aspect, impl_->geometry.lower, impl_->geometry.upper);
+    const RenderContext context{impl_->bvh, impl_->surfaces, impl_->surroundings, impl_->lights, settings};
+    Picture picture;
+    prepare(picture, settings);
+    Tiles tiles(settings);
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto share = [&](const std::function<void(double)>& report) {
+        try {
+            const RayCounts rays = impl_->work(picture, context, view, tiles, report);
+            const std::lock_guard lock(mutex);
+            picture.rays.reflection += rays.reflection;
+            picture.rays.refraction += rays.refraction;
+            picture.rays.shadow += rays.shadow;
+            picture.rays.ambient += rays.ambient;
+        } catch (...) {
+            tiles.stop = true;
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    std::vector<std::thread> others;
+    const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+    for (unsigned i = 1; i < cores; i++) others.emplace_back(share, nullptr);
+    share(progress);
+    for (std::thread& other : others) other.join();
+    if (failure) std::rethrow_exception(failure);
+    return picture;
+}
+
+}  // namespace peelray

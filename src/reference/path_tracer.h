@@ -1,0 +1,36 @@
+// Ground truth: the frame of docs/frame.md on the CPU, in double precision (DESIGN.md section 4, `--tracer reference`).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "scene/environment.h"
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// Renders what the GPU renders, by the same rules from the same samples, on all cores: the same camera rays, branches,
+/// random numbers, lights and materials. Hits are the oracle's (Embree 3 finds candidates, double precision decides);
+/// all shading is in double precision. So a picture differs from the GPU's where intersections do, and by rounding.
+class PathTracer {
+  public:
+    /// `scene`, `geometry` and `environment` must outlive it. Throws Error if Embree has no room.
+    PathTracer(const Scene& scene, const Geometry& geometry, const Environment& environment);
+    ~PathTracer();
+
+    /// `threads`: 0 for all cores. The picture does not depend on it. `progress` is told the share done, [0, 1], from
+    /// the calling thread only; if it throws, all threads stop and the exception goes on. Throws Error for impossible
+    /// settings, naming the option.
+    Picture render(const PictureSettings& settings, const std::function<void(double)>& progress = {},
+                   unsigned threads = 0) const;
+
+    /// "Embree 3.13.5"
+    static std::string version();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace peelray

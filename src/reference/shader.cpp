@@ -1,0 +1,252 @@
+#include "reference/shader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/optics.h"
+
+namespace peelray {
+namespace {
+
+using namespace optics;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Branches that carry less of the pixel's light are not traced: they see the environment.
+constexpr double least_weight = 1.0 / 512;
+/// Layers of glass that a shadow ray passes before it counts as blocked.
+constexpr int shadow_layers = 16;
+
+/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
+double traced_part(const Optics& m, uint32_t spp) {
+    if (spp > 1) return m.roughness < 0.6 || m.metallic > 0.5 ? 1 : 0;
+    const double x = std::clamp((m.roughness - 0.2) / 0.3, 0.0, 1.0);
+    return 1 - x * x * (3 - 2 * x);
+}
+
+/// A light as a point of a surface meets it.
+struct Incidence {
+    glm::dvec3 irradiance{0};  ///< on a surface that faces the light; 0: none
+    glm::dvec3 direction;      ///< to the light, unit
+};
+
+Incidence incidence(const Light& light, const glm::dvec3& position) {
+    if (light.kind == Light::Kind::directional) return {light.color, -glm::dvec3(light.direction)};
+    const glm::dvec3 to_light = glm::dvec3(light.position) - position;
+    const double distance = glm::length(to_light);
+    if (distance == 0) return {};
+    const glm::dvec3 direction = to_light / distance;
+    // KHR_lights_punctual: inverse square with a smooth end at the range, a squared ramp between the cones.
+    double strength = 1 / (distance * distance);
+    if (std::isfinite(light.range)) strength *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
+    if (light.kind == Light::Kind::spot) {
+        const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
+        const double cosine = glm::dot(glm::dvec3(light.direction), -direction);
+        const double ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
+        strength *= ramp * ramp;
+    }
+    return {glm::dvec3(light.color) * strength, direction};
+}
+
+glm::dvec3 normal_incidence(const Surface& s, const Optics& m) {
+    return glm::mix(glm::dvec3(normal_reflectance(m.ior)), s.base_color, m.metallic);
+}
+
+/// Reflected share of light from `to_light`, times the cosine: Lambert below GGX.
+glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view, const glm::dvec3& to_light) {
+    const double n_l = glm::dot(s.normal, to_light);
+    if (n_l <= 0) return glm::dvec3(0);
+    const glm::dvec3 h = glm::normalize(view + to_light);
+    const double n_v = std::max(1e-4, glm::dot(s.normal, view)), n_h = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
+    const glm::dvec3 fresnel = fresnel_schlick(normal_incidence(s, m), std::clamp(glm::dot(view, h), 0.0, 1.0));
+    glm::dvec3 share = (1 - m.metallic) * (1 - m.transmission) * (1.0 - fresnel) * s.base_color / pi;
+    if (m.roughness >= mirror_roughness) {
+        const double alpha = m.roughness * m.roughness;
+        share += fresnel *
+                 (ggx_distribution(n_h, alpha) * ggx_masking(n_v, alpha) * ggx_masking(n_l, alpha) / (4 * n_v * n_l));
+    }
+    return share * n_l;
+}
+
+}  // namespace
+
+OracleHit Shader::hit(const Path& path) const {
+    return context_.bvh.nearest({path.origin, 0, path.direction, infinity}, path.skip).hit;
+}
+
+glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
+    return medium == none ? glm::dvec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
+}
+
+glm::dvec3 Shader::radiance(const Path& arriving, const OracleHit& hit) {
+    if (!hit.hit()) return context_.surroundings.seen(arriving.direction, arriving.sees_sun);
+    const Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction);
+    const glm::dvec3 kept = transmittance(arriving.medium, hit.t);
+    Path path = arriving;
+    path.weight *= kept;
+    const Scattered scattered = scatter(surface, path);
+    glm::dvec3 sum = scattered.radiance;
+    if (scattered.reflection.traced) rays_.reflection++;
+    if (scattered.refraction.traced) rays_.refraction++;
+    sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
+    sum += follow(scattered.refraction, surface, path, hit.triangle, 1);
+    sum += direct_light(surface, hit.triangle, path);
+    return kept * sum;
+}
+
+/// The light of one of a hit's two branches.
+glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                          uint32_t which) {
+    if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
+    if (!branch.traced) return branch.weight * context_.surroundings.radiance(branch.direction, branch.blur);
+    Path next;
+    next.origin = surface.start(surface.position, branch.direction);
+    next.direction = branch.direction;
+    next.skip = triangle;
+    next.weight = path.weight * branch.weight;
+    next.medium = branch.medium;
+    next.sees_sun = branch.sees_sun;
+    next.seed = hash3({path.seed, which, path.level}).x;
+    next.level = path.level + 1;
+    return branch.weight * radiance(next, hit(next));
+}
+
+bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
+    return effect && path.level < context_.settings.bounces && largest(branch.weight * path.weight) >= least_weight;
+}
+
+/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
+glm::dvec3 Shader::half_vector(const Surface& s, const glm::dvec3& view, double alpha, uint32_t seed) const {
+    if (context_.settings.spp <= 1 || alpha < mirror_roughness * mirror_roughness) return s.normal;
+    const auto [t, b] = tangents(s.normal);
+    const glm::dvec3 local(glm::dot(view, t), glm::dot(view, b), std::max(1e-4, glm::dot(view, s.normal)));
+    const glm::dvec3 h = sample_ggx(glm::normalize(local), alpha, random_pair(seed, sample_, Purpose::microfacet));
+    return glm::normalize(t * h.x + b * h.y + s.normal * h.z);
+}
+
+/// Both branches of a surface, and what it sends by itself (docs/frame.md section 4).
+Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
+    const Optics& m = context_.surfaces.optics(s.material);
+    const PictureSettings& settings = context_.settings;
+    Scattered out;
+    if (m.unlit) {
+        out.radiance = s.base_color;
+        return out;
+    }
+    const glm::dvec3 view = -path.direction;
+    const bool transmits = m.transmits(), leaving = transmits && !m.thin && !s.front,
+               mirror = m.roughness < mirror_roughness;
+    const double eta = leaving ? 1 / m.ior : m.ior, alpha = m.roughness * m.roughness;
+    const glm::dvec3 h = half_vector(s, view, alpha, path.seed);
+    const double cosine = std::clamp(glm::dot(view, h), 0.0, 1.0);
+    double dielectric = fresnel_dielectric(cosine, eta);
+    if (transmits && m.thin) dielectric = 2 * dielectric / (1 + dielectric);  // both faces of the wall
+
+    Branch& reflection = out.reflection;
+    const glm::dvec3 reflected = path.direction - 2 * glm::dot(path.direction, h) * h;
+    reflection.weight = glm::mix(glm::dvec3(dielectric), fresnel_schlick(s.base_color, cosine), m.metallic);
+    if (!mirror && settings.spp > 1) {
+        const double above = glm::dot(reflected, s.normal);
+        reflection.weight *= above > 0 ? ggx_masking(above, alpha) : 0;
+    } else if (!mirror && !transmits) {
+        reflection.weight = environment_brdf(normal_incidence(s, m), m.roughness, cosine);
+    }
+    reflection.direction = above_surface(reflected, s.geometric);
+    reflection.medium = path.medium;
+    reflection.sees_sun = mirror && path.sees_sun;
+    reflection.traced = is_traced(reflection, path, settings.reflection);
+    reflection.blur = settings.spp > 1 ? 0 : m.roughness;
+
+    out.radiance = m.emissive;
+    const double part = transmits ? 1 : traced_part(m, settings.spp);
+    if (part < 1) {  // the untraced part of a wide lobe, at once
+        out.radiance +=
+            reflection.weight * (1 - part) * context_.surroundings.radiance(reflection.direction, m.roughness);
+        reflection.weight *= part;
+        reflection.traced = reflection.traced && part > 0;
+    }
+    if (!transmits) return out;
+
+    const auto direction = m.thin ? std::optional(path.direction) : refract_ray(path.direction, h, eta);
+    if (direction) {
+        Branch& refraction = out.refraction;
+        refraction.weight = (1 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
+        refraction.direction = *direction;
+        refraction.medium = m.thin ? path.medium : leaving ? none : s.material;
+        refraction.sees_sun = mirror && path.sees_sun;
+        refraction.traced = is_traced(refraction, path, settings.refraction);
+    }
+    return out;
+}
+
+/// Light from the lamps, the sun and the diffuse sky (docs/frame.md section 5).
+glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path& path) {
+    const Optics& m = context_.surfaces.optics(s.material);
+    if (m.unlit) return glm::dvec3(0);
+    const glm::dvec3 view = -path.direction;
+    glm::dvec3 sum(0);
+    for (const Light& light : context_.lights) {
+        const auto [irradiance, direction] = incidence(light, s.position);
+        if (irradiance == glm::dvec3(0) || glm::dot(s.geometric, direction) <= 0) continue;
+        const glm::dvec3 reflected = irradiance * reflectance(s, m, view, direction);
+        if (reflected == glm::dvec3(0)) continue;
+        if (!context_.settings.shadow) {
+            sum += reflected;
+            continue;
+        }
+        rays_.shadow++;
+        const glm::dvec3 start = s.start(s.shadow_start, direction);
+        const bool far = light.kind == Light::Kind::directional;
+        const double reach = far ? infinity : glm::dot(glm::dvec3(light.position) - start, direction);
+        sum += reflected * visibility(start, direction, reach, triangle);
+    }
+    return sum + sky_light(s, triangle, path);
+}
+
+glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& path) {
+    const Optics& m = context_.surfaces.optics(s.material);
+    glm::dvec3 diffuse = (1 - m.metallic) * (1 - m.transmission) * s.base_color / pi;
+    if (diffuse == glm::dvec3(0)) return diffuse;
+    // What the surface mirrors does not reach its body: the share that scatter() gives to the reflection.
+    const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
+    if (m.roughness < mirror_roughness)
+        diffuse *= 1 - fresnel_dielectric(cosine, m.ior);
+    else
+        diffuse *= 1.0 - environment_brdf(glm::dvec3(normal_reflectance(m.ior)), m.roughness, cosine);
+    const glm::dvec3 light = diffuse * context_.surroundings.irradiance(s.normal);
+    if (!context_.settings.ambient) return light;
+    // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
+    const glm::dvec2 random = random_pair(path.seed, sample_, Purpose::sky);
+    const auto [t, b] = tangents(s.normal);
+    const double r = std::sqrt(random.x), phi = 2 * pi * random.y;
+    const glm::dvec3 up = s.normal * std::sqrt(std::max(0.0, 1 - random.x));
+    const glm::dvec3 direction = above_surface(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up, s.geometric);
+    rays_.ambient++;
+    return light * visibility(s.start(s.shadow_start, direction), direction, infinity, triangle);
+}
+
+/// Share of the light that arrives from `distance` away: 0 or 1, or the tint of the glass in between.
+glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance,
+                              uint32_t triangle) const {
+    glm::dvec3 share(1);
+    uint32_t skip = triangle;
+    double from = 0;
+    for (int layer = 0; layer < shadow_layers; layer++) {
+        const OracleHit hit = context_.bvh.nearest({start, from, direction, distance}, skip).hit;
+        if (!hit.hit()) return share;
+        const Optics& m = context_.surfaces.optics_of_triangle(hit.triangle);
+        if (!m.transmits()) return glm::dvec3(0);
+        const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
+        const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
+        double reflected = fresnel_dielectric(cosine, m.thin || s.front ? m.ior : 1 / m.ior);
+        if (m.thin) reflected = 2 * reflected / (1 + reflected);  // both faces of the wall
+        share *= (1 - reflected) * (1 - m.metallic) * m.transmission * s.base_color;
+        // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
+        if (!m.thin && !s.front) share *= glm::exp(-m.absorption * (hit.t - from));
+        if (largest(share) < least_weight) return glm::dvec3(0);
+        from = hit.t;
+        skip = hit.triangle;
+    }
+    return glm::dvec3(0);
+}
+
+}  // namespace peelray

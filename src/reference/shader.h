@@ -1,0 +1,76 @@
+// The tree of rays below a sample of a pixel, followed depth first. Private to src/reference.
+#pragma once
+
+#include <vector>
+
+#include "reference/bvh.h"
+#include "reference/surface.h"
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// What rays run through: shared by all threads, constant.
+struct RenderContext {
+    const Bvh& bvh;
+    const Surfaces& surfaces;
+    const Surroundings& surroundings;
+    const std::vector<Light>& lights;
+    const PictureSettings& settings;
+};
+
+/// Follows the rays of one sample of one pixel.
+class Shader {
+  public:
+    static constexpr uint32_t none = ~0u;
+
+    struct Path {
+        glm::dvec3 origin, direction;  ///< direction: unit
+        uint32_t skip = none;          ///< triangle that does not count: the one where the ray starts
+        glm::dvec3 weight{1};          ///< share of the pixel's light that comes along the ray
+        uint32_t medium = none;        ///< material whose volume the ray is in
+        bool sees_sun = true;
+        uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
+        uint32_t level = 0;
+    };
+
+    Shader(const RenderContext& context, uint32_t sample) : context_(context), sample_(sample) {}
+
+    /// What the path's ray hits.
+    OracleHit hit(const Path& path) const;
+    /// Light that comes back along the path from its hit.
+    glm::dvec3 radiance(const Path& path, const OracleHit& hit);
+    /// The rays traced so far, camera rays excepted.
+    const RayCounts& rays() const { return rays_; }
+
+  private:
+    struct Branch {
+        glm::dvec3 weight{0};  ///< share of the hit's light; 0: no branch
+        glm::dvec3 direction{0, 0, 1};
+        uint32_t medium = none;
+        bool sees_sun = false;
+        bool traced = false;
+        double blur = 0;  ///< roughness for the environment, if not traced
+    };
+    struct Scattered {
+        Branch reflection, refraction;
+        glm::dvec3 radiance{0};  ///< what the surface sends by itself
+    };
+
+    Scattered scatter(const Surface& surface, const Path& path) const;
+    glm::dvec3 half_vector(const Surface& surface, const glm::dvec3& view, double alpha, uint32_t seed) const;
+    bool is_traced(const Branch& branch, const Path& path, bool effect) const;
+    glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                      uint32_t which);
+
+    glm::dvec3 direct_light(const Surface& surface, uint32_t triangle, const Path& path);
+    glm::dvec3 sky_light(const Surface& surface, uint32_t triangle, const Path& path);
+    glm::dvec3 visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance,
+                          uint32_t triangle) const;
+    glm::dvec3 transmittance(uint32_t medium, double distance) const;
+
+    const RenderContext& context_;
+    uint32_t sample_;
+    RayCounts rays_;
+};
+
+}  // namespace peelray

@@ -1,0 +1,152 @@
+#include "reference/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/optics.h"
+
+namespace peelray {
+namespace {
+
+int wrap(int i, int size, Texture::Wrap mode) {
+    if (mode == Texture::Wrap::clamp) return std::clamp(i, 0, size - 1);
+    const int period = mode == Texture::Wrap::repeat ? size : 2 * size;
+    const int m = ((i % period) + period) % period;
+    return m < size ? m : period - 1 - m;
+}
+
+glm::dvec3 texel(const Texture& texture, int x, int y) {
+    const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
+    const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
+    const uint32_t encoded = texture.texels[row * texture.width + column];
+    const auto channel = [&](int i) { return optics::srgb_to_linear((encoded >> (8 * i) & 255) / 255.0); };
+    return {channel(0), channel(1), channel(2)};
+}
+
+/// Bilinear between the four values around `p` (values lie at half-integers).
+template <typename Fetch>
+glm::dvec3 bilinear(const glm::dvec2& p, Fetch fetch) {
+    const glm::dvec2 q = p - 0.5, f = q - glm::floor(q);
+    const int x = int(std::floor(q.x)), y = int(std::floor(q.y));
+    return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
+                    f.y);
+}
+
+glm::dvec3 sample_texture(const Texture& texture, glm::dvec2 uv) {
+    // Repeats are dropped, so that any coordinate fits an int.
+    const auto place = [](double x, Texture::Wrap mode) {
+        return mode == Texture::Wrap::clamp ? std::clamp(x, 0.0, 1.0) : x - 2 * std::floor(x / 2);
+    };
+    const glm::dvec2 p(place(uv.x, texture.wrap_u) * texture.width, place(uv.y, texture.wrap_v) * texture.height);
+    if (texture.nearest) return texel(texture, int(std::floor(p.x)), int(std::floor(p.y)));
+    return bilinear(p, [&](int x, int y) { return texel(texture, x, y); });
+}
+
+}  // namespace
+
+Optics::Optics(const Material& m)
+    : base_color(m.base_color),
+      emissive(m.emissive),
+      absorption(0),
+      metallic(m.metallic),
+      roughness(m.roughness),
+      transmission(m.transmission),
+      ior(std::max(m.ior, 1.0f)),
+      thin(m.thickness <= 0),
+      unlit(m.unlit) {
+    // KHR_materials_volume: white becomes attenuation_color after attenuation_distance.
+    if (std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
+        absorption =
+            -glm::log(glm::max(glm::dvec3(m.attenuation_color), glm::dvec3(1e-6))) / double(m.attenuation_distance);
+}
+
+glm::dvec3 Surface::start(const glm::dvec3& point, const glm::dvec3& direction) const {
+    const double distance = 1e-12 * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+    return point + geometric * (glm::dot(direction, geometric) >= 0 ? distance : -distance);
+}
+
+Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry) {
+    for (const Material& material : scene.materials) optics_.emplace_back(material);
+}
+
+Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const {
+    const glm::uvec3 corners = geometry_.triangles[triangle];
+    const double weights[3] = {std::max(0.0, 1 - u - v), u, v};
+    glm::dvec3 p[3], n[3];
+    for (int i = 0; i < 3; i++) {
+        p[i] = geometry_.positions[corners[i]];
+        n[i] = geometry_.normals[corners[i]];
+    }
+    const auto interpolate = [&](const auto& values) {
+        return values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2];
+    };
+    Surface s;
+    s.position = interpolate(p);
+    s.material = geometry_.materials[triangle];
+    const glm::dvec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double size = glm::length(area);
+    glm::dvec3 normal = interpolate(n);
+    normal = glm::dot(normal, normal) > 0 ? glm::normalize(normal) : glm::dvec3(0, 1, 0);
+    s.geometric = size > 0 ? area / size : normal;
+    s.front = glm::dot(s.geometric, direction) < 0;
+    if (!s.front) s.geometric = -s.geometric;
+    const double side = glm::dot(normal, s.geometric) < 0 ? -1 : 1;
+    s.normal = optics::visible_normal(side * normal, s.geometric, -direction);
+    s.shadow_start = glm::dvec3(0);
+    for (int i = 0; i < 3; i++) {
+        // The position, lifted to the plane through each corner along the corner's normal.
+        const glm::dvec3 corner_normal = side * n[i];
+        const double below = std::min(0.0, glm::dot(s.position - p[i], corner_normal));
+        s.shadow_start += weights[i] * (s.position - below * corner_normal);
+    }
+    s.base_color = optics_[s.material].base_color;
+    if (!geometry_.colors.empty()) {
+        const glm::dvec4 colors[3] = {geometry_.colors[corners.x], geometry_.colors[corners.y],
+                                      geometry_.colors[corners.z]};
+        s.base_color *= glm::dvec3(interpolate(colors));
+    }
+    if (const int texture = scene_.materials[s.material].base_color_texture; texture >= 0) {
+        const glm::dvec2 uvs[3] = {geometry_.uvs[corners.x], geometry_.uvs[corners.y], geometry_.uvs[corners.z]};
+        s.base_color *= sample_texture(scene_.textures[size_t(texture)], interpolate(uvs));
+    }
+    return s;
+}
+
+glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {
+    size_t offset = 0;
+    uint32_t width = environment_.width, height = environment_.height;
+    for (uint32_t i = 0; i < level; i++) {
+        offset += size_t(width) * height;
+        width = std::max(width / 2, 1u);
+        height = std::max(height / 2, 1u);
+    }
+    return bilinear(uv * glm::dvec2(width, height), [&](int x, int y) {
+        const auto column = size_t((x + int(width)) % int(width)), row = size_t(std::clamp(y, 0, int(height) - 1));
+        return glm::dvec3(environment_.texels[offset + row * width + column]);
+    });
+}
+
+glm::dvec3 Surroundings::radiance(const glm::dvec3& d, double blur) const {
+    const glm::dvec2 uv(0.5 + std::atan2(d.x, -d.z) / (2 * optics::pi),
+                        std::acos(std::clamp(d.y, -1.0, 1.0)) / optics::pi);
+    const double exact = blur * (environment_.levels - 1);
+    const auto lower = uint32_t(exact), upper = std::min(lower + 1, environment_.levels - 1);
+    return glm::mix(level(uv, lower), level(uv, upper), exact - lower);
+}
+
+glm::dvec3 Surroundings::seen(const glm::dvec3& d, bool sees_sun) const {
+    const glm::dvec3 all = radiance(d, 0);
+    if (!sees_sun) return all * std::min(1.0, double(environment_.rough_limit) / std::max(optics::largest(all), 1e-30));
+    const bool sun = glm::dot(d, glm::dvec3(environment_.sun_direction)) >= double(environment_.sun_cosine);
+    return sun ? all + glm::dvec3(environment_.sun_radiance) : all;
+}
+
+glm::dvec3 Surroundings::irradiance(const glm::dvec3& n) const {
+    const double basis[9] = {
+        1, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3 * n.z * n.z - 1, n.x * n.z, n.x * n.x - n.y * n.y};
+    glm::dvec3 sum(0);
+    for (int i = 0; i < 9; i++) sum += glm::dvec3(environment_.irradiance[size_t(i)]) * basis[i];
+    return glm::max(sum, glm::dvec3(0));
+}
+
+}  // namespace peelray

@@ -1,0 +1,72 @@
+// The scene as shading sees it, in double precision: materials, the surface at a hit, the environment. Private to
+// src/reference.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/environment.h"
+#include "scene/scene.h"
+
+namespace peelray {
+
+/// A material's constants.
+struct Optics {
+    glm::dvec3 base_color, emissive, absorption;  ///< absorption: per world unit inside the volume
+    double metallic, roughness, transmission, ior;
+    bool thin, unlit;
+
+    explicit Optics(const Material& material);
+    bool transmits() const { return transmission > 0 && metallic < 1; }
+};
+
+/// What shading needs to know of a hit (see Surface in shaders/frame.glsl).
+struct Surface {
+    glm::dvec3 position;
+    glm::dvec3 geometric;     ///< unit normal of the triangle, on the ray's side
+    glm::dvec3 normal;        ///< interpolated, unit, on the ray's side
+    glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
+    glm::dvec3 base_color;
+    bool front;  ///< the ray comes from the side that the normals point to
+    uint32_t material;
+
+    /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by a millionth of what the GPU
+    /// needs.
+    glm::dvec3 start(const glm::dvec3& point, const glm::dvec3& direction) const;
+};
+
+/// Attributes and materials of a scene, which must outlive it.
+class Surfaces {
+  public:
+    Surfaces(const Scene& scene, const Geometry& geometry);
+
+    /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction`.
+    Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const;
+    const Optics& optics(uint32_t material) const { return optics_[material]; }
+    const Optics& optics_of_triangle(uint32_t triangle) const { return optics_[geometry_.materials[triangle]]; }
+
+  private:
+    const Scene& scene_;
+    const Geometry& geometry_;
+    std::vector<Optics> optics_;
+};
+
+/// Light from outside the scene; the environment must outlive it.
+class Surroundings {
+  public:
+    explicit Surroundings(const Environment& environment) : environment_(environment) {}
+
+    /// Radiance along a unit direction without the sun's disc; `blur` in [0, 1]: a surface's roughness.
+    glm::dvec3 radiance(const glm::dvec3& direction, double blur) const;
+    /// What a ray that hits nothing sees.
+    glm::dvec3 seen(const glm::dvec3& direction, bool sees_sun) const;
+    /// Of the environment on a surface with this normal, from nine harmonics.
+    glm::dvec3 irradiance(const glm::dvec3& normal) const;
+
+  private:
+    glm::dvec3 level(const glm::dvec2& uv, uint32_t level) const;
+
+    const Environment& environment_;
+};
+
+}  // namespace peelray
