@@ -39,7 +39,7 @@ packages:
 clean:
 	rm -rf build out
 
-SOURCES = $$(git ls-files --cached --others --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' 'include/*.h')
+SOURCES = $$(git ls-files --cached --others --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' 'include/*.h' 'bench/*.cpp')
 
 format:
 	@command -v clang-format > /dev/null || { echo 'make format needs clang-format: apt-get install clang-format' >&2; exit 1; }
