@@ -1,4 +1,4 @@
-// FLIP against closed forms, derived here in double, and against the authors' algorithm in another form.
+// FLIP against closed forms, derived here in double, and against a second implementation.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -268,9 +268,9 @@ TEST(Flip, DoesNotDependOnTheNumberOfBands) {
     for (size_t i = 0; i < many.values.size(); ++i) ASSERT_EQ(many.values[i], few.values[i % 90]) << i;
 }
 
-TEST(Flip, IsThatOfTheAuthors) {
-    // The authors' algorithm as their NumPy code has it (two-dimensional kernels, nothing separable), run in double
-    // with NumPy 1.24 and SciPy 1.10 on these two pictures.
+TEST(Flip, AgreesWithASecondImplementation) {
+    // The values come from a second implementation, written in NumPy after the formulas of the authors' own: in double,
+    // with two-dimensional kernels, nothing separable (NumPy 1.24, SciPy 1.10).
     const Image8 a = pattern(), b = changed(a);
     const auto expect = [&](double ppd, double mean, const std::vector<std::array<double, 3>>& pixels) {
         const ErrorMap map = flip(a, b, ppd);
@@ -419,8 +419,8 @@ TEST(HdrFlip, SeesInHighlightsAndShadowsWhatADisplayDoesNot) {
     EXPECT_GT(hdr_flip(reference, shadow).values[28 * 32 + 5], 0.05);
 }
 
-TEST(HdrFlip, IsThatOfTheAuthors) {
-    // As above; the authors take 8 exposures here, from -10.8628 to -3.0618 stops.
+TEST(HdrFlip, AgreesWithASecondImplementation) {
+    // As above; it takes 8 exposures here.
     const ErrorMap map = hdr_flip(radiance(), radiance_changed());
     EXPECT_NEAR(flip_exposures(radiance()).start, -10.862753, 1e-6);
     EXPECT_NEAR(flip_exposures(radiance()).stop, -3.061767, 1e-6);
