@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "../image/temp_folder.h"
 #include "image/image.h"
@@ -18,18 +19,25 @@ std::string vec(const glm::dvec3& v) {
     return fmt::format("<{:.9g},{:.9g},{:.9g}>", v.x, v.y, v.z);
 }
 
-/// A PPM of 16 bits a channel.
+/// A PPM of 16 bits a channel: "P6", comment lines, width, height, 65535, then big-endian red, green, blue.
 Image read_ppm16(const std::string& bytes) {
-    Image image;
-    int most = 0, header = 0;
-    if (std::sscanf(bytes.c_str(), "P6 %u %u %d%n", &image.width, &image.height, &most, &header) != 3 || most != 65535)
-        return {};
-    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data()) + header + 1;
-    const size_t pixels = size_t(image.width) * image.height;
-    if (bytes.size() < size_t(header) + 1 + pixels * 6) return {};
-    for (size_t i = 0; i < pixels; i++, data += 6)
-        image.pixels.push_back(
-            glm::vec4(data[0] << 8 | data[1], data[2] << 8 | data[3], data[4] << 8 | data[5], 65535) / 65535.f);
+    std::istringstream stream(bytes);
+    std::string word;
+    std::vector<std::string> header;
+    while (header.size() < 4 && stream >> word) {
+        if (word[0] == '#')
+            std::getline(stream, word);
+        else
+            header.push_back(word);
+    }
+    if (header.size() < 4 || header[0] != "P6" || header[3] != "65535") return {};
+    Image image{uint32_t(std::stoul(header[1])), uint32_t(std::stoul(header[2])), {}};
+    const size_t start = size_t(stream.tellg()) + 1, pixels = size_t(image.width) * image.height;
+    if (bytes.size() < start + pixels * 6) return {};
+    const auto value = [&](size_t i) {
+        return float(uint8_t(bytes[start + 2 * i]) << 8 | uint8_t(bytes[start + 2 * i + 1])) / 65535;
+    };
+    for (size_t i = 0; i < pixels; i++) image.pixels.push_back({value(3 * i), value(3 * i + 1), value(3 * i + 2), 1});
     return image;
 }
 
