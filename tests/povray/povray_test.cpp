@@ -69,6 +69,7 @@ class PovRayTest : public TempFolder {
     }
 
     bool run_povray(uint32_t width, uint32_t height) {
+        std::fflush(stdout);  // else the child would print it again
         const pid_t child = ::fork();
         if (child == 0) {
             if (::chdir(folder.c_str()) != 0 || !std::freopen("log", "w", stdout) || !std::freopen("log", "a", stderr))
