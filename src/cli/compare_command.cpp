@@ -30,9 +30,9 @@ struct Entry {
 std::string quoted(const std::string& word) {
     const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:,=+@%", c); };
     if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-    std::string out = "'";
+    std::string out;
     for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
+    return fmt::format("'{}'", out);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -79,7 +79,7 @@ std::vector<Entry> plan(const CompareArguments& a) {
             continue;
         }
         for (const std::string& hit : a.hits) {
-            const std::string name = a.hits.size() > 1 ? "ldc " + hit : "ldc";
+            const std::string name = a.hits.size() > 1 ? fmt::format("ldc {}", hit) : "ldc";
             entries.push_back({name, tracer, hit, {}, render_command(a, name, tracer, hit)});
         }
     }
@@ -98,7 +98,7 @@ bool is_linear(const fs::path& path) {
 
 /// A picture that another program made.
 Entry read_picture(const CompareArguments& a, const fs::path& path) {
-    Entry entry{path.filename().string(), "", "", path, "(" + path.string() + " was given)"};
+    Entry entry{path.filename().string(), "", "", path, fmt::format("--picture {}", path.string())};
     if (is_linear(path)) {
         entry.radiance = read_hdr(path);
         const RenderSettings settings = settings_of(a);
@@ -228,7 +228,8 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
     const Entry& reference = entries[report.reference];
     if (reference.tracer != "reference" && entries.size() > 1)
-        report.notes.push_back("without --tracers reference the pictures are compared with '" + reference.name + "'");
+        report.notes.push_back(
+            fmt::format("without --tracers reference the pictures are compared with '{}'", reference.name));
     for (const Entry& entry : entries) {
         ReportPicture picture{entry.name, entry.command, entry.encoded, facts_of(entry), {}};
         if (&entry != &reference) picture.difference = difference(reference, entry);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "cli/options.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 namespace peelray {
