@@ -160,10 +160,11 @@ void add_render(CLI::App& program, RenderArguments& a) {
     add_choice(app, "--tonemap", a.tonemap, {"none", "aces", "neutral"}, "tone curve of a .png")->group(light);
 
     const char* effects = "Effects";
-    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr", "none"},
-               "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in double "
-               "precision; none: no "
-               "secondary rays; the others: not built yet")
+    add_choice(
+        app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr", "none"},
+        "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in double "
+        "precision; cubemap: the baseline without rays, cube maps of each object's surroundings and shadow maps; "
+        "none: neither; khr: not built yet")
         ->group(effects);
     add_parsed(app, "--effects", a.effects, parse_effects,
                "a list out of reflection,refraction,shadow,ambient, or none",
@@ -256,7 +257,7 @@ void TracingArguments::check() const {
     const auto later = [](const char* option, const std::string& value, const char* instead) {
         fail("{} {} is not built into this version: use {}", option, value, instead);
     };
-    if (tracer == "khr" || tracer == "cubemap") later("--tracer", tracer, "--tracer ldc");
+    if (tracer == "khr") later("--tracer", tracer, "--tracer ldc");
     if (builder != "auto" && builder != "compute") later("--builder", builder, "--builder compute");
     if (hit == "tolerance") later("--hit", hit, "--hit exact or planar");
     if (traversal != "voxel") later("--traversal", traversal, "--traversal voxel");

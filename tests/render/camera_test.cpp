@@ -205,7 +205,7 @@ TEST_F(CameraTest, TheSamePictureTwice) {
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);
     EXPECT_EQ(first.encoded, again.encoded);
-    EXPECT_EQ(first.rays.secondary(), again.stats.rays.secondary());
+    EXPECT_EQ(first.rays.secondary(), again.rays.secondary());
 }
 
 TEST_F(CameraTest, RepeatedFramesChangeNothing) {
@@ -214,7 +214,7 @@ TEST_F(CameraTest, RepeatedFramesChangeNothing) {
     settings.repeat = 3;
     const RenderResult thrice = render(everything(), white, settings);
     EXPECT_EQ(tally(once, thrice, 0).wrong, 0u);
-    EXPECT_EQ(once.rays.secondary(), thrice.stats.rays.secondary());
+    EXPECT_EQ(once.rays.secondary(), thrice.rays.secondary());
 }
 
 TEST_F(CameraTest, SamplesAverageTheEdge) {
