@@ -165,10 +165,16 @@ std::vector<ReportFact> facts_of(const Entry& entry) {
         facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
         facts.emplace_back("cube in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
     }
-    if (s.contains("probes")) {
-        const Json& probes = s["probes"];
-        facts.emplace_back("cube maps", fmt::format("{} of 6 × {}²", probes["count"].get<uint32_t>(),
-                                                    probes["face_size"].get<uint32_t>()));
+    if (s.contains("cubemap")) {
+        const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];
+        facts.emplace_back("of which the maps", ms(s["cubemap"]["maps_ms"]));
+        facts.emplace_back(
+            "cube maps", fmt::format("{} of 6 × {}²", probes["count"].get<uint32_t>(), probes["face"].get<uint32_t>()));
+        facts.emplace_back("shadow maps",
+                           fmt::format("{} of {}²", shadows["count"].get<uint32_t>(), shadows["size"].get<uint32_t>()));
+        facts.emplace_back(
+            "maps in memory",
+            fmt::format("{:.1f} MiB", (probes["bytes"].get<double>() + shadows["bytes"].get<double>()) / (1 << 20)));
     }
     return facts;
 }

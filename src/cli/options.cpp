@@ -152,8 +152,8 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
     if (!compares)
         add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr", "none"},
                    "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in double "
-                   "precision; none: no "
-                   "secondary rays; the others: not built yet")
+                   "precision; cubemap: the baseline without rays, cube maps of each object's surroundings and shadow "
+                   "maps; none: neither; khr: not built yet")
             ->group(effects);
     add_parsed(app, "--effects", a.effects, parse_effects,
                "a list out of reflection,refraction,shadow,ambient, or none",

@@ -18,7 +18,9 @@ PictureMaker::~PictureMaker() = default;
 MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings) {
     settings.camera = scene_.camera;
     if (tracer == "reference") return make_reference(settings);
-    settings.trace = tracer != "none";
+    if (tracer == "cubemap" && settings.ambient)
+        print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
+    settings.tracer = tracer == "cubemap" ? Tracer::cubemap : tracer == "none" ? Tracer::none : Tracer::ldc;
     return make_on_gpu(settings);
 }
 
@@ -38,7 +40,13 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
     made.stats = render_stats(*device_, result, scene_.geometry);
     made.device = device_->info().name;
     if (s.ldc) made.summary = fmt::format(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
-    if (s.timed) made.summary += fmt::format("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
+    if (s.tracer == Tracer::cubemap)
+        made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
+                                   s.maps.shadows.maps);
+    if (s.timed)
+        made.summary += s.tracer == Tracer::cubemap
+                            ? fmt::format("; GPU {:.2f} ms (maps {:.2f} ms)", s.frame_ms, s.maps_ms)
+                            : fmt::format("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
     made.picture = std::move(result);
     return made;
 }

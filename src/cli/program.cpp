@@ -49,7 +49,7 @@ void TracingArguments::check() const {
     const auto later = [](const char* option, const std::string& value, const char* instead) {
         fail("{} {} is not built into this version: use {}", option, value, instead);
     };
-    if (tracer == "khr" || tracer == "cubemap") later("--tracer", tracer, "--tracer ldc");
+    if (tracer == "khr") later("--tracer", tracer, "--tracer ldc");
     if (builder != "auto" && builder != "compute") later("--builder", builder, "--builder compute");
     if (hit == "tolerance") later("--hit", hit, "--hit exact or planar");
     if (traversal != "voxel") later("--traversal", traversal, "--traversal voxel");

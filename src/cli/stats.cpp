@@ -46,9 +46,26 @@ Json ray_stats(const RayCounts& rays) {
             {"ambient", rays.ambient}};
 }
 
+static Json map_stats(const RenderStats& stats) {
+    const CubeMaps::Stats& m = stats.maps;
+    return {{"maps_ms", stats.maps_ms},
+            {"probes",
+             {{"count", m.probes},
+              {"face", m.face},
+              {"rounds", m.rounds},
+              {"samples", m.samples},
+              {"bytes", m.probe_bytes},
+              {"objects_left_out", m.left_out}}},
+            {"shadow_maps",
+             {{"count", m.shadows.maps},
+              {"size", m.shadows.size},
+              {"face_of_six", m.shadows.face_size},
+              {"bytes", m.shadows.bytes}}}};
+}
+
 Json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry) {
     const RenderStats& s = result.stats;
-    Json json = {{"tracer", s.ldc ? "ldc" : "none"}};
+    Json json = {{"tracer", s.tracer == Tracer::ldc ? "ldc" : s.tracer == Tracer::cubemap ? "cubemap" : "none"}};
     json.update(device_stats(device));
     json["image"] = {result.width, result.height};
     json["triangles"] = geometry.triangles.size();
@@ -69,6 +86,7 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
     if (s.ldc)
         json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes,
                                  s.hit == HitTest::exact ? "conservative" : "centre");
+    if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
     json["hit"] = s.ldc ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
     json["memory_bytes"] = {{"scene", s.scene_bytes},
                             {"cube", s.cube_bytes},

@@ -24,7 +24,7 @@ GpuMaterial gpu_material(const Material& material) {
     m.ior = std::max(material.ior, 1.0f);
     m.texture = material.base_color_texture;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u);
-    m.alpha = material.alpha;
+    m.thickness = material.thickness;
     // Beer and Lambert: white becomes attenuation_color after attenuation_distance (KHR_materials_volume).
     if (std::isfinite(material.attenuation_distance) && material.attenuation_distance > 0)
         m.absorption =
@@ -88,11 +88,9 @@ void GpuScene::upload_materials(Device& device, Commands& commands, const Scene&
 }
 
 void GpuScene::upload_lights(Device& device, Commands& commands, const Scene& scene, const Environment& env) {
-    std::vector<GpuLight> gpu_lights;
-    for (const Light& light : scene.lights) gpu_lights.push_back(gpu_light(light));
-    for (const Light& light : env.lights) gpu_lights.push_back(gpu_light(light));
-    light_count = uint32_t(gpu_lights.size());
-    lights = upload(device, commands, "lights", gpu_lights);
+    for (const Light& light : scene.lights) light_list.push_back(gpu_light(light));
+    for (const Light& light : env.lights) light_list.push_back(gpu_light(light));
+    lights = upload(device, commands, "lights", light_list);
 }
 
 uint64_t GpuScene::bytes() const {
@@ -104,7 +102,7 @@ uint64_t GpuScene::bytes() const {
 }
 
 void GpuScene::describe(Frame& frame) const {
-    frame.lights = light_count;
+    frame.lights = uint32_t(light_list.size());
     frame.has_colors = has_colors;
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;

@@ -20,7 +20,7 @@ class GpuScene {
     Buffer lights, environment;
     bool has_glass = false;  ///< some triangle lets light through
     bool has_colors = false;
-    uint32_t light_count = 0;
+    std::vector<GpuLight> light_list;  ///< what `lights` holds
 
     uint64_t bytes() const;
 

@@ -61,13 +61,13 @@ struct Renderer::Impl {
     Device& device;
     GpuScene scene;
     glm::vec3 lower, upper;
+    CubeMaps maps;
     ComputeBuilder builder;
     Cube cube;
     PathQueues queues;
     Commands commands;
-    Buffer frame_buffer, frame_staging, visibility, picture, encoded, aov_buffer;
-    Image2D visibility_image, depth_image;
-    uint32_t image_width = 0, image_height = 0;
+    ViewTarget view;
+    Buffer picture, encoded, aov_buffer;
 
     RenderSettings settings;
     HitTest hit = HitTest::exact;
@@ -83,11 +83,11 @@ struct Renderer::Impl {
           scene(device, source, geometry, environment),
           lower(geometry.lower),
           upper(geometry.upper),
+          maps(device, scene, source, geometry),
           builder(device),
           queues(device),
-          commands(device) {
-        frame_buffer = Buffer(device, "frame constants", sizeof(Frame));
-    }
+          commands(device),
+          view(device) {}
 
     void check_settings() const;
     void prepare_images();
@@ -96,13 +96,12 @@ struct Renderer::Impl {
     void build_cube();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
-    void record_primary(const LevelParams& p);
+    void record_level(const LevelParams& p);
     void record_scatter(const LevelParams& p);
     void record_shadow(const LevelParams& p);
     void record_band(uint32_t sample, uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
-    std::vector<Binding> with_surface(std::initializer_list<Binding> others) const;
 };
 
 void Renderer::Impl::check_settings() const {
@@ -123,31 +122,21 @@ void Renderer::Impl::check_settings() const {
 }
 
 void Renderer::Impl::prepare_images() {
-    if (image_width == settings.width && image_height == settings.height) return;
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    visibility_image.reset();
-    depth_image.reset();
-    visibility_image =
-        Image2D(device, "visibility", settings.width, settings.height, VK_FORMAT_R32_UINT,
-                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
-    depth_image = Image2D(device, "depth", settings.width, settings.height, VK_FORMAT_D32_SFLOAT,
-                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
-    ensure_size(device, visibility, "visible triangles", pixels * 4);
+    view.resize(device, settings.width, settings.height);
     ensure_size(device, picture, "picture", pixels * 16);
     ensure_size(device, encoded, "encoded picture", pixels * 4);
-    image_width = settings.width;
-    image_height = settings.height;
 }
 
 void Renderer::Impl::prepare_frame() {
-    last_level = settings.trace ? settings.bounces : 0;
+    const bool cubemap = settings.tracer == Tracer::cubemap;
+    last_level = settings.tracer == Tracer::ldc ? settings.bounces : 0;
     const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
     // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to
     // grow.
     const uint64_t most = std::min<uint64_t>(4u << 20, device.limits().maxStorageBufferRange / (2 * sizeof(PathNode)));
     const uint32_t rows = (settings.height + 7) / 8 * 8;
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
-    queues.prepare(row_pixels * band_rows, last_level + 1, scene.has_glass);
 
     frame = {};
     frame.grid = cube.grid;
@@ -157,15 +146,18 @@ void Renderer::Impl::prepare_frame() {
     frame.row_pixels = row_pixels;
     scene.describe(frame);
     frame.effects = 0;
-    if (settings.trace)
+    if (settings.tracer != Tracer::none)
         frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) |
                         (settings.refraction ? EFFECT_REFRACTION : 0u) | (settings.shadow ? EFFECT_SHADOW : 0u) |
                         (settings.ambient ? EFFECT_AMBIENT : 0u);
     // Planar hits know a surface to about a voxel: a ray starts beyond its own surface's samples (DESIGN.md section 3).
-    frame.surface_offset = settings.trace && hit == HitTest::planar ? 1.5f * cube.grid.voxel : 0;
-    frame.spp = settings.spp;
+    frame.surface_offset = settings.tracer == Tracer::ldc && hit == HitTest::planar ? 1.5f * cube.grid.voxel : 0;
+    frame.spp = cubemap ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.last_level = last_level;
-    commands.upload(frame_buffer, std::span<const Frame>(&frame, 1));
+    commands.upload(view.frame, std::span<const Frame>(&frame, 1));
+    if (cubemap) maps.prepare(commands, settings, frame);
+    queues.prepare(std::max(row_pixels * band_rows, cubemap ? maps.face() * maps.face() : 0), last_level + 1,
+                   scene.has_glass);
 }
 
 void Renderer::Impl::count_times() {
@@ -185,9 +177,8 @@ void Renderer::Impl::build_cube() {
 void Renderer::Impl::record_visibility(uint32_t sample) {
     commands.draw(
         device.raster_pass("visibility"),
-        {{"frame", frame_buffer}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
-        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, visibility_image, depth_image,
-        visibility);
+        {{"frame", view.frame}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
+        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, view.color, view.depth, view.visibility);
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -203,48 +194,19 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
     return p;
 }
 
-void Renderer::Impl::record_primary(const LevelParams& p) {
-    const PathLevel& level = queues.level(0);
-    commands.run(device.pass("primary"),
-                 {{"frame", frame_buffer},
-                  {"positions", scene.triangles.positions},
-                  {"triangles", scene.triangles.triangles},
-                  {"visibility", visibility},
-                  {"rays", level.rays},
-                  {"states", level.states},
-                  {"hits", level.hits},
-                  {"queue", queues.counters()}},
-                 p, groups_for(p.capacity, 64));
-}
-
-/// What surfaceAt() of frame.glsl reads, and `others`.
-std::vector<Binding> Renderer::Impl::with_surface(std::initializer_list<Binding> others) const {
-    std::vector<Binding> bindings = {{"frame", frame_buffer},
-                                     {"materials", scene.materials},
-                                     {"texture_infos", scene.texture_infos},
-                                     {"texels", scene.texels},
-                                     {"normals", scene.normals},
-                                     {"uvs", scene.uvs},
-                                     {"colors", scene.colors},
-                                     {"triangle_materials", scene.triangle_materials},
-                                     {"positions", scene.triangles.positions},
-                                     {"triangles", scene.triangles.triangles}};
-    for (const Binding& other : others) bindings.push_back(other);
-    return bindings;
-}
-
 void Renderer::Impl::record_scatter(const LevelParams& p) {
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
     commands.run_indirect(device.pass("scatter"),
-                          with_surface({{"environment", scene.environment},
-                                        {"rays", level.rays},
-                                        {"states", level.states},
-                                        {"hits", level.hits},
-                                        {"nodes", level.nodes},
-                                        {"queue", queues.counters()},
-                                        {"next_rays", next.rays},
-                                        {"next_states", next.states},
-                                        {"next_skip", next.skip}}),
+                          surface_bindings(scene, view.frame,
+                                           {{"environment", scene.environment},
+                                            {"rays", level.rays},
+                                            {"states", level.states},
+                                            {"hits", level.hits},
+                                            {"nodes", level.nodes},
+                                            {"queue", queues.counters()},
+                                            {"next_rays", next.rays},
+                                            {"next_states", next.states},
+                                            {"next_skip", next.skip}}),
                           p, queues.groups(), p.level * 12);
 }
 
@@ -254,34 +216,42 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     // Without a cube its bindings still need buffers; the shader does not read them then.
     const auto cube_buffer = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
     commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
-                          with_surface({{"top_table", cube_buffer(cube.top_table)},
-                                        {"node_table", cube_buffer(cube.node_table)},
-                                        {"voxel_table", cube_buffer(cube.voxel_table)},
-                                        {"samples", cube_buffer(cube.samples)},
-                                        {"sample_ids", cube_buffer(cube.sample_ids)},
-                                        {"rays", level.rays},
-                                        {"states", level.states},
-                                        {"hits", level.hits},
-                                        {"nodes", level.nodes},
-                                        {"queue", queues.counters()},
-                                        {"lights", scene.lights}}),
+                          surface_bindings(scene, view.frame,
+                                           {{"top_table", cube_buffer(cube.top_table)},
+                                            {"node_table", cube_buffer(cube.node_table)},
+                                            {"voxel_table", cube_buffer(cube.voxel_table)},
+                                            {"samples", cube_buffer(cube.samples)},
+                                            {"sample_ids", cube_buffer(cube.sample_ids)},
+                                            {"rays", level.rays},
+                                            {"states", level.states},
+                                            {"hits", level.hits},
+                                            {"nodes", level.nodes},
+                                            {"queue", queues.counters()},
+                                            {"lights", scene.lights}}),
                           p, queues.groups(), p.level * 12);
+}
+
+/// Traces and shades one level of the tree of rays.
+void Renderer::Impl::record_level(const LevelParams& p) {
+    const PathLevel& level = queues.level(p.level);
+    if (settings.tracer == Tracer::cubemap) {
+        maps.record_shading(commands, view.frame, level, p);
+        return;
+    }
+    commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
+    if (p.level > 0)
+        record_trace(
+            commands, device, cube, scene.triangles,
+            {level.rays, &level.skip, level.capacity, &queues.counters(), p.level, &queues.groups(), p.level * 12ull},
+            level.hits, hit, false, Edges::single);
+    record_scatter(p);
+    record_shadow(p);
 }
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
-    record_primary(level_params(0, sample, first_row));
-    for (uint32_t i = 0; i <= last_level; i++) {
-        const PathLevel& level = queues.level(i);
-        const LevelParams p = level_params(i, sample, first_row);
-        commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
-        if (i > 0)
-            record_trace(commands, device, cube, scene.triangles,
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
-                         level.hits, hit, false, Edges::single);
-        record_scatter(p);
-        record_shadow(p);
-    }
+    record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row));
+    for (uint32_t i = 0; i <= last_level; i++) record_level(level_params(i, sample, first_row));
     for (uint32_t i = last_level; i-- > 0;)
         commands.run_indirect(
             device.pass("gather"),
@@ -289,7 +259,7 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
             level_params(i, sample, first_row), queues.groups(), i * 12);
     const LevelParams p = level_params(0, sample, first_row);
     commands.run(device.pass("accumulate"),
-                 {{"frame", frame_buffer},
+                 {{"frame", view.frame},
                   {"nodes", queues.level(0).nodes},
                   {"hits", queues.level(0).hits},
                   {"queue", queues.counters()},
@@ -302,7 +272,8 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     rays = {};
     times = {};
     frame_ms = 0;
-    if (settings.trace) build_cube();
+    if (settings.tracer == Tracer::ldc) build_cube();
+    if (settings.tracer == Tracer::cubemap) maps.render(commands, queues, [&] { count_times(); });
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
             if (row == 0) record_visibility(sample);
@@ -338,11 +309,12 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     record_visibility(0);
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
-        record_primary(p);
+        record_primary(commands, device, scene, view, queues, p);
         commands.run(
             device.pass("aov"),
-            with_surface({{"rays", queues.level(0).rays}, {"hits", queues.level(0).hits}, {"aovs", aov_buffer}}), p,
-            groups_for(p.capacity, 64));
+            surface_bindings(scene, view.frame,
+                             {{"rays", queues.level(0).rays}, {"hits", queues.level(0).hits}, {"aovs", aov_buffer}}),
+            p, groups_for(p.capacity, 64));
     }
     commands.submit();
     const auto data = commands.download<glm::vec4>(aov_buffer, pixels * 4);
@@ -369,7 +341,8 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     r.hit = choice.hit;
     r.redone = 0;
     r.prepare_images();
-    if (settings.trace) r.builder.prepare(r.cube, r.scene.triangles, choice.ldc, sampling_for(choice.hit));
+    if (settings.tracer == Tracer::ldc)
+        r.builder.prepare(r.cube, r.scene.triangles, choice.ldc, sampling_for(choice.hit));
     r.prepare_frame();
 
     RenderResult result;
@@ -389,6 +362,8 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     for (const auto& row : r.times.rows()) {
         stats.passes.push_back({row.name, median(samples[row.name])});
         if (row.name.starts_with("build/")) stats.build_ms += stats.passes.back().ms;
+        if (row.name.starts_with("probe/") || row.name.starts_with("shadow_map/"))
+            stats.maps_ms += stats.passes.back().ms;
     }
     stats.frame_ms = median(frames);
     stats.timed = r.device.timestamp_period() > 0;
@@ -396,8 +371,10 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     stats.redone = r.redone;
     stats.hit = choice.hit;
     stats.scene_bytes = r.scene.bytes();
-    stats.frame_bytes = r.queues.bytes() + r.picture.bytes() + r.encoded.bytes() + r.visibility.bytes();
-    if (settings.trace) {
+    stats.frame_bytes = r.queues.bytes() + r.picture.bytes() + r.encoded.bytes() + r.view.visibility.bytes();
+    stats.tracer = settings.tracer;
+    if (settings.tracer == Tracer::cubemap) stats.maps = r.maps.stats();
+    if (settings.tracer == Tracer::ldc) {
         stats.ldc = choice.ldc;
         stats.grid = r.cube.grid;
         stats.cube = r.cube.counts;

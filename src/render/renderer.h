@@ -8,21 +8,29 @@
 
 #include "ldc/compute_builder.h"
 #include "ldc/tracer.h"
-#include "render/gpu_scene.h"
+#include "render/cube_maps.h"
 #include "scene/picture.h"
 
 namespace peelray {
+
+/// Who answers for what a surface mirrors, lets through and has in its way to the light.
+enum class Tracer : uint8_t {
+    ldc,      ///< rays in the layered depth cube
+    cubemap,  ///< the baseline: cube maps of each object's surroundings and shadow maps
+    none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
+};
 
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings {
     uint32_t ldc = 0;      ///< voxels along the box's longest side, 16 to 2048; 0: chosen by the number of triangles
     bool hit_auto = true;  ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;
-    bool trace = true;    ///< false: no cube, no secondary rays (--tracer none)
+    Tracer tracer = Tracer::ldc;
     uint32_t repeat = 1;  ///< frames to render; times are medians over them
 };
 
 struct RenderStats {
+    Tracer tracer = Tracer::ldc;
     struct Time {
         std::string name;
         double ms;  ///< GPU time; median over the repeated frames; summed over bands, samples and levels of a frame
@@ -30,12 +38,14 @@ struct RenderStats {
     std::vector<Time> passes;  ///< in order of their first run
     double frame_ms = 0;       ///< GPU time from first to last pass, median over the frames
     double build_ms = 0;       ///< of the cube's passes
+    double maps_ms = 0;        ///< of the passes of probes and shadow maps
     bool timed = false;        ///< false: the device has no timestamps
     CubeGrid grid{};
     LdcCounters cube{};
     uint64_t cube_bytes = 0, scratch_bytes = 0, scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
     uint32_t ldc = 0;
     HitTest hit = HitTest::exact;
+    CubeMaps::Stats maps;
     uint32_t redone = 0;  ///< how often something did not fit and was done again
 };
 

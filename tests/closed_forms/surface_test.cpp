@@ -158,14 +158,14 @@ TEST_F(SwitchTest, WithoutBouncesOnlyShadowsAreTraced) {
 }
 
 TEST_F(SwitchTest, WithoutTracingNothingIsTraced) {
-    settings_.trace = false;
+    settings_.tracer = Tracer::none;
     const Colors none = colors(settings_);
     EXPECT_TRUE(near(none.mirror, {0, 1, 0}, 1e-4)) << text(none.mirror);
     EXPECT_TRUE(near(none.glass, {0, 1, 0}, 1e-3)) << text(none.glass);
     EXPECT_GT(none.shadow.x, 0.1);  // lit: no shadow
     // The same picture as with all effects off.
     RenderSettings off = settings_;
-    off.trace = true;
+    off.tracer = Tracer::ldc;
     off.reflection = off.refraction = off.shadow = false;
     const Colors same = colors(off);
     EXPECT_TRUE(near(same.mirror, none.mirror, 1e-6) && near(same.glass, none.glass, 1e-6) &&

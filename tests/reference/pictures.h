@@ -7,10 +7,12 @@
 
 namespace peelray {
 
+enum class Tracer : uint8_t { ldc, none };
+
 /// The settings that the GPU's tests know; the reference has no cube to choose a resolution for.
 struct RenderSettings : PictureSettings {
     uint32_t ldc = 0;
-    bool trace = true;  ///< false: no effect is traced
+    Tracer tracer = Tracer::ldc;  ///< none: no effect is traced
 };
 using RenderResult = Picture;
 
@@ -24,7 +26,8 @@ inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
 class PictureTest : public testing::Test {
   protected:
     Picture render(const Stage& stage, const Environment& environment, RenderSettings settings, unsigned threads = 0) {
-        if (!settings.trace) settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
+        if (settings.tracer == Tracer::none)
+            settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
         const Geometry geometry = flatten(stage.scene);
         return PathTracer(stage.scene, geometry, environment).render(settings, {}, threads);
     }

@@ -1,0 +1,41 @@
+// The baseline's light: lamps and the sun through shadow maps, the diffuse sky unoccluded.
+#version 460
+#include "common.glsl"
+#include "params.h"
+layout(local_size_x = 64) in;
+PARAMS(LevelParams)
+#define SCENE_FIRST_BINDING 0
+#define SCENE_WITH_TRIANGLES
+#include "scene_buffers.glsl"
+BUFFER(readonly, 11, Ray, rays)
+BUFFER(readonly, 12, Hit, hits)
+BUFFER(, 13, PathNode, nodes)
+BUFFER(readonly, 14, GpuLight, lights)
+BUFFER(readonly, 15, GpuShadowMap, shadow_maps)
+BUFFER(readonly, 16, float, shadow_depths)
+#define SHADOW_DEPTH(index) shadow_depths[index]
+#include "cubemap.glsl"
+#include "shadow_map.glsl"
+#include "frame.glsl"
+#include "lighting.glsl"
+
+vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle) {
+    uint face = 6u * index;
+    if (shadow_maps[face + 1u].size != 0u) {
+        vec2 unused;
+        face += cubeFace(s.shadow_start - lights[index].position, unused);
+    }
+    return vec3(shadowMapShare(shadow_maps[face], s.shadow_start, s.geometric, direction));
+}
+
+vec3 skyVisibility(Surface s, uint seed, uint triangle) { return vec3(1); }
+
+void main() {
+    const uint i = GLOBAL_INDEX;
+    if (i >= params.capacity) return;
+    const Hit hit = hits[i];
+    if (hit.triangle == 0xffffffffu) return;
+    const vec3 direction = rays[i].direction;
+    const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), direction);
+    nodes[i].radiance += lightSurface(s, hit.triangle, -direction, 0u);
+}

@@ -1,0 +1,71 @@
+#include "render/object_table.h"
+
+#include <algorithm>
+
+namespace peelray {
+
+bool ObjectSummary::reflects_or_refracts(const PictureSettings& settings) const {
+    if (settings.refraction && transmits) return true;
+    const bool traced = settings.spp > 1 ? smoothest < 0.6f || metallic : smoothest < 0.5f;
+    return settings.reflection && (traced || transmits);
+}
+
+ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
+    for (const Geometry::Object& object : geometry.objects) {
+        ObjectSummary s;
+        s.first = object.first;
+        s.count = object.count;
+        uint32_t last = ~0u;
+        for (uint32_t i = object.first; i < object.first + object.count; i++) {
+            for (int k = 0; k < 3; k++) {
+                const glm::vec3& p = geometry.positions[geometry.triangles[i][k]];
+                s.lower = glm::min(s.lower, p);
+                s.upper = glm::max(s.upper, p);
+            }
+            if (geometry.materials[i] == last) continue;
+            last = geometry.materials[i];
+            const Material& m = scene.materials[last];
+            if (m.unlit) continue;
+            s.transmits |= m.transmission > 0 && m.metallic < 1;
+            s.metallic |= m.metallic > 0.5f;
+            s.smoothest = std::min(s.smoothest, m.roughness);
+            s.roughest = std::max(s.roughest, m.roughness);
+        }
+        objects_.push_back(s);
+    }
+}
+
+std::vector<GpuObject> ObjectTable::gpu_objects() const {
+    std::vector<GpuObject> table;
+    for (const ObjectSummary& s : objects_) {
+        const glm::vec3 size = s.upper - s.lower;
+        table.push_back({s.lower, NO_PROBE, s.upper, 0, 0, std::min({size.x, size.y, size.z})});
+    }
+    return table;
+}
+
+void ObjectTable::upload(Device& device, Commands& commands) {
+    if (triangle_objects_) return;
+    std::vector<uint32_t> owners(objects_.back().first + objects_.back().count);
+    for (uint32_t i = 0; i < objects_.size(); i++)
+        std::fill_n(owners.begin() + objects_[i].first, objects_[i].count, i);
+    triangle_objects_ = Buffer(device, "objects of the triangles", owners.size() * 4);
+    commands.upload(triangle_objects_, std::span<const uint32_t>(owners));
+    without_probes_ = Buffer(device, "objects", objects_.size() * sizeof(GpuObject));
+    commands.upload(without_probes_, std::span<const GpuObject>(gpu_objects()));
+}
+
+void ObjectTable::record_visibility(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
+                                    const MapVisibilityParams& params) const {
+    commands.draw(device.raster_pass("map_visibility"),
+                  {{"frame", target.frame},
+                   {"positions", scene.triangles.positions},
+                   {"triangles", scene.triangles.triangles},
+                   {"triangle_materials", scene.triangle_materials},
+                   {"materials", scene.materials},
+                   {"triangle_objects", triangle_objects_},
+                   {"objects", without_probes_}},
+                  params, scene.triangles.count * 3, target.color, target.depth, target.visibility);
+}
+
+}  // namespace peelray

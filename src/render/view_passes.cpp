@@ -1,0 +1,47 @@
+#include "render/view_passes.h"
+
+namespace peelray {
+
+void ViewTarget::resize(Device& device, uint32_t width, uint32_t height) {
+    if (color.width() == width && color.height() == height && visibility) return;
+    color.reset();
+    depth.reset();
+    color = Image2D(device, "visibility", width, height, VK_FORMAT_R32_UINT,
+                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    depth = Image2D(device, "depth", width, height, VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                    VK_IMAGE_ASPECT_DEPTH_BIT);
+    ensure_size(device, visibility, "visible triangles", uint64_t(width) * height * 4);
+}
+
+std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame,
+                                      std::initializer_list<Binding> others) {
+    std::vector<Binding> bindings = {{"frame", frame},
+                                     {"materials", scene.materials},
+                                     {"texture_infos", scene.texture_infos},
+                                     {"texels", scene.texels},
+                                     {"normals", scene.normals},
+                                     {"uvs", scene.uvs},
+                                     {"colors", scene.colors},
+                                     {"triangle_materials", scene.triangle_materials},
+                                     {"positions", scene.triangles.positions},
+                                     {"triangles", scene.triangles.triangles}};
+    for (const Binding& other : others) bindings.push_back(other);
+    return bindings;
+}
+
+void record_primary(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
+                    PathQueues& queues, const LevelParams& params) {
+    const PathLevel& level = queues.level(0);
+    commands.run(device.pass("primary"),
+                 {{"frame", target.frame},
+                  {"positions", scene.triangles.positions},
+                  {"triangles", scene.triangles.triangles},
+                  {"visibility", target.visibility},
+                  {"rays", level.rays},
+                  {"states", level.states},
+                  {"hits", level.hits},
+                  {"queue", queues.counters()}},
+                 params, groups_for(params.capacity, 64));
+}
+
+}  // namespace peelray
