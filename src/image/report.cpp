@@ -70,8 +70,8 @@ constexpr std::array metrics = {
            " dB"},
     Metric{"SSIM", "structural similarity; higher is better, 1: equal", &Difference::ssim, 4, 1, true},
     Metric{"FLIP", "mean difference that an observer sees, 0 to 1; lower is better", &Difference::flip, 4, 0},
-    Metric{"HDR-FLIP", "the same for the unclipped radiance over all exposures; lower is better", &Difference::hdr_flip,
-           4, 0},
+    Metric{"HDR-FLIP", "the same over all exposures of the radiance; lower is better, –: a picture without radiance",
+           &Difference::hdr_flip, 4, 0},
     Metric{"pixels different", "share of the pixels that differ by more than 1/255 in a channel; lower is better",
            &Difference::different, 2, 0, false, 100, " %"},
 };
@@ -79,7 +79,7 @@ constexpr std::array metrics = {
 /// Never rounds to the perfect value what is not perfect: a reader must not take "nearly equal" for "equal".
 std::string number(const Metric& metric, const Difference& difference) {
     const double value = difference.*metric.value * metric.scale;
-    if (std::isnan(value)) return "NaN";
+    if (std::isnan(value)) return "–";
     if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
     const auto rounded = [&](double v) { return fmt::format("{:.{}f}", v, metric.digits); };
     const double step = std::pow(10.0, -metric.digits);

@@ -136,7 +136,7 @@ TEST_F(Html, NeverRoundsToEqualWhatIsNot) {
               "<td>∞</td><td>1.0000</td><td>0.0000</td><td>0.0000</td><td>0.00 %</td>");
     EXPECT_EQ(cells({99, 0.999999, 1e-6, 1e-9, 1e-7, map}),
               "<td>99.00 dB</td><td>&gt; 0.9999</td><td>&lt; 0.0001</td><td>&lt; 0.0001</td><td>&lt; 0.01 %</td>");
-    EXPECT_EQ(cells({NAN, -1, 0, 0, 0, map}).substr(0, 36), "<td>NaN</td><td>-1.0000</td><td>0.00");
+    EXPECT_EQ(cells({NAN, -1, 0, 0, 0, map}).substr(0, 38), "<td>–</td><td>-1.0000</td><td>0.0000");
 }
 
 TEST_F(Html, MarksTheBestOfSeveral) {

@@ -146,9 +146,15 @@ class Browser:
             time.sleep(0.1)
         raise AssertionError("waited 10 s for " + what)
 
+    def settle(self):
+        """Waits two frames: what was asked for is on the screen then."""
+        frames = "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));"
+        self.call("POST", "/execute/async", {"script": frames, "args": []})
+
     def act(self, *sources):
         self.call("POST", "/actions", {"actions": list(sources)})
         self.call("DELETE", "/actions")
+        self.settle()
 
     def mouse(self, *moves, kind="mouse"):
         """Presses at the first point, moves through the others, lets go at the last."""
@@ -160,6 +166,7 @@ class Browser:
         """Leaves the mouse there."""
         move = {"type": "pointerMove", "x": int(x), "y": int(y), "duration": 0}
         self.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": [move]}]})
+        self.settle()
 
     def wheel(self, x, y, amount):
         scroll = {"type": "scroll", "x": int(x), "y": int(y), "deltaX": 0, "deltaY": amount, "duration": 0}
@@ -179,6 +186,7 @@ class Browser:
             fingers = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
             self.cdp("Input.dispatchTouchEvent", type="touchMove" if index else "touchStart", touchPoints=fingers)
         self.cdp("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        self.settle()
 
     def phone(self, width=390, height=844, density=2):
         self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=density, mobile=True)
@@ -189,8 +197,7 @@ class Browser:
 
     def screenshot(self):
         """Of the window, as PNG bytes."""
-        # Two frames, so that what was asked for is on the screen.
-        self.call("POST", "/execute/async", {"script": "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));", "args": []})
+        self.settle()
         return base64.b64decode(self.call("GET", "/screenshot"))
 
     def messages(self):
