@@ -78,8 +78,8 @@ class Bench {
     }
 
     Tally run(RayKind kind, uint64_t count, uint32_t seed, const std::function<void(uint64_t)>& progress) {
-        // Where planar hits are good for a voxel only, a frame's rays start 1.5 voxels off their surface: so do these.
-        test::RaySource source(geometry_, seed, test_ == HitTest::planar ? 1.5 * cube_.grid.voxel : 0);
+        // Where planar hits are good for a voxel only, a frame's rays start 0.7 voxels off their surface: so do these.
+        test::RaySource source(geometry_, seed, test_ == HitTest::planar ? 0.7 * cube_.grid.voxel : 0);
         Tally tally;
         constexpr uint64_t batch = 1 << 20;
         Buffer rays(device_, "rays", batch * sizeof(Ray)), hits(device_, "hits", batch * sizeof(Hit));
