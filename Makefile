@@ -5,7 +5,7 @@ PROGRAM := build/release/peelray
 # Tests run one program after the other: each already uses all cores.
 CTEST := ctest --output-on-failure --no-tests=error
 
-.PHONY: help demo build test clean format check-format packages
+.PHONY: help demo build test clean format check-format packages test-packages
 .DEFAULT_GOAL := help
 
 help:
@@ -24,7 +24,7 @@ build: packages
 	@cmake --preset release --log-level=NOTICE
 	@cmake --build --preset release --parallel $(JOBS) --target peelray
 
-test: packages
+test: test-packages
 	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset release --parallel $(JOBS)
 	$(CTEST) --test-dir build/release
@@ -36,10 +36,13 @@ test: packages
 packages:
 	@scripts/packages.sh packages.txt
 
+test-packages:
+	@scripts/packages.sh packages.txt test
+
 clean:
 	rm -rf build out
 
-SOURCES = $$(git ls-files --cached --others --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' 'include/*.h')
+SOURCES = $$(git ls-files --cached --others --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' 'include/*.h' 'bench/*.cpp')
 
 format:
 	@command -v clang-format > /dev/null || { echo 'make format needs clang-format: apt-get install clang-format' >&2; exit 1; }

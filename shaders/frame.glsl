@@ -6,6 +6,9 @@
 
 #include "shading.glsl"
 
+/// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
+const float FLATTEST_START = 4.0;
+
 /// What shading needs to know of a hit.
 struct Surface {
     vec3 position;
@@ -137,12 +140,15 @@ vec3 transmittance(uint medium, float t) {
     return medium == MEDIUM_NONE ? vec3(1) : exp(-materials[medium].absorption * t);
 }
 
-/// The start of a ray that leaves the surface to the side that `side` points to: off the triangle's plane by the position's
-/// error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6), planar hits
-/// by the voxel-sized error of their samples.
-vec3 offsetStart(Surface s, vec3 start, vec3 side) {
-    const float distance = s.error + frame[0].surface_offset;
-    return start + s.geometric * (dot(side, s.geometric) >= 0.0 ? distance : -distance);
+/// A ray along `direction` as far as `reach` from the point `start` of a surface. It starts off the triangle's plane by the
+/// position's error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6).
+/// Planar hits know surfaces to a voxel only: there a ray counts from where it is frame[0].surface_offset above the plane. It
+/// stays on its line until then, unless it is so flat that it would miss too much: then it is lifted as well.
+Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
+    const float slope = dot(direction, s.geometric);
+    const float first = min(frame[0].surface_offset / max(abs(slope), 1e-6), FLATTEST_START * frame[0].surface_offset);
+    const float lift = s.error + (frame[0].surface_offset - first * abs(slope));
+    return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
 }
 
 #endif

@@ -166,7 +166,7 @@ struct Frame {
     vec3 sun_radiance;
     uint effects;        ///< EFFECT_*
     vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
-    float surface_offset;  ///< along the normal, in world units, before a secondary ray starts (planar hits)
+    float surface_offset;  ///< height above its surface, world units, from which a secondary ray counts (planar hits)
     uint spp;
     uint last_level;     ///< level whose hits spawn no more rays
     float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light

@@ -50,7 +50,7 @@ void decide(inout Branch branch, vec3 path_weight, uint effect) {
 void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weight, uint seed) {
     if (index >= params.next_capacity) return;
     const float infinity = uintBitsToFloat(0x7f800000u);
-    next_rays[index] = Ray(offsetStart(s, s.position, branch.direction), 0.0, branch.direction, infinity);
+    next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
     next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
     next_skip[index] = triangle;
 }

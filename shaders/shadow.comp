@@ -27,8 +27,8 @@ uint shadow_rays = 0u, ambient_rays = 0u;  // of this thread
 const uint SHADOW_LAYERS = 16u;
 
 /// Share of the light that arrives along the ray: 0 or 1, or the tint of the glass in between.
-vec3 visibility(vec3 start, vec3 direction, float distance, uint triangle) {
-    PeelrayRay ray = PeelrayRay(start, 0.0, direction, distance);
+vec3 visibility(Ray leaving, uint triangle) {
+    PeelrayRay ray = PeelrayRay(leaving.origin, leaving.tmin, leaving.direction, leaving.tmax);
     if (!glass) return vec3(peelrayTrace(frame[0].grid, ray, triangle, true, planar).triangle == PEELRAY_MISS ? 1.0 : 0.0);
     vec3 share = vec3(1);
     uint skip = triangle;
@@ -37,10 +37,10 @@ vec3 visibility(vec3 start, vec3 direction, float distance, uint triangle) {
         if (hit.triangle == PEELRAY_MISS) return share;
         const GpuMaterial m = materials[triangle_materials[hit.triangle]];
         if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
-        const vec2 uv = planar ? cubeWeights(hit.triangle, start + hit.t * direction) : hit.uv;
-        const Surface s = surfaceAt(hit.triangle, uv, direction);
+        const vec2 uv = planar ? cubeWeights(hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;
+        const Surface s = surfaceAt(hit.triangle, uv, ray.direction);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-        float reflected = fresnelDielectric(clamp(-dot(direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
+        float reflected = fresnelDielectric(clamp(-dot(ray.direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
         if (thin) reflected = 2.0 * reflected / (1.0 + reflected);  // both faces of the wall
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
@@ -54,10 +54,9 @@ vec3 visibility(vec3 start, vec3 direction, float distance, uint triangle) {
 
 vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle) {
     shadow_rays++;
-    const vec3 start = offsetStart(s, s.shadow_start, direction);
-    const float infinity = uintBitsToFloat(0x7f800000u);
-    const float reach = lights[index].kind == 0u ? infinity : dot(lights[index].position - start, direction);
-    return visibility(start, direction, reach, triangle);
+    Ray ray = leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
+    if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
+    return visibility(ray, triangle);
 }
 
 vec3 skyVisibility(Surface s, uint seed, uint triangle) {
@@ -68,7 +67,7 @@ vec3 skyVisibility(Surface s, uint seed, uint triangle) {
     const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
     const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
     ambient_rays++;
-    return visibility(offsetStart(s, s.shadow_start, direction), direction, uintBitsToFloat(0x7f800000u), triangle);
+    return visibility(leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u)), triangle);
 }
 
 void main() {

@@ -19,7 +19,7 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
     settings.camera = scene_.camera;
     if (tracer == "reference") return make_reference(settings);
     if (tracer == "cubemap" && settings.ambient)
-        fmt::print(stderr, "peelray: note: --tracer cubemap has no ambient: the sky's diffuse light is unoccluded\n");
+        print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
     settings.tracer = tracer == "cubemap" ? Tracer::cubemap : tracer == "none" ? Tracer::none : Tracer::ldc;
     return make_on_gpu(settings);
 }

@@ -55,6 +55,13 @@ struct RenderArguments : PictureArguments {
     std::vector<std::string> aovs;
 };
 
+struct CompareArguments : PictureArguments {
+    std::filesystem::path output, json, strip;
+    std::vector<std::string> tracers = {"cubemap", "ldc", "reference"}, hits = {"auto"};
+    std::vector<std::filesystem::path> pictures;
+    std::vector<std::string> given;  ///< the picture's options as they were typed
+};
+
 struct TraceArguments {
     std::string scene;
     std::filesystem::path rays, hits, stats;
@@ -65,12 +72,15 @@ struct TraceArguments {
 };
 
 void run_render(const RenderArguments& arguments);
+void run_compare(const CompareArguments& arguments);
 void run_trace(const TraceArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 
 /// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit.
 Geometry visible_geometry(const Scene& scene);
+/// A line on standard error that is no complaint.
+void print_note(const std::string& text);
 /// Throws Error unless `repeat` is a sensible number of measurements.
 void check_repeat(uint32_t repeat);
 /// Throws Error if a file of `outputs` cannot be written, comes twice or is one of `inputs`; empty names are left out.

@@ -1,6 +1,7 @@
 #include "cli/values.h"
 
 #include <algorithm>
+#include <set>
 
 namespace peelray {
 namespace {
@@ -62,6 +63,24 @@ std::optional<std::vector<std::string>> parse_effects(const std::string& text) {
 
 std::optional<std::vector<std::string>> parse_aovs(const std::string& text) {
     return text == "all" ? std::optional(aov_names()) : parse_names(text, aov_names());
+}
+
+namespace {
+
+std::optional<std::vector<std::string>> parse_distinct(const std::string& text, const std::vector<std::string>& known) {
+    const auto names = parse_names(text, known);
+    if (!names || std::set<std::string>(names->begin(), names->end()).size() < names->size()) return std::nullopt;
+    return names;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::string>> parse_tracers(const std::string& text) {
+    return parse_distinct(text, {"cubemap", "ldc", "reference", "none", "khr"});
+}
+
+std::optional<std::vector<std::string>> parse_hits(const std::string& text) {
+    return parse_distinct(text, {"auto", "exact", "planar", "tolerance"});
 }
 
 const std::vector<std::string>& effect_names() {

@@ -36,6 +36,11 @@ std::optional<std::vector<std::string>> parse_effects(const std::string& text);
 /// A list out of aov_names(), or "all".
 std::optional<std::vector<std::string>> parse_aovs(const std::string& text);
 
+/// Tracers to compare; none twice.
+std::optional<std::vector<std::string>> parse_tracers(const std::string& text);
+/// Hit tests to compare; none twice.
+std::optional<std::vector<std::string>> parse_hits(const std::string& text);
+
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& aov_names();
 

@@ -28,5 +28,7 @@ Image decode_exr(const std::filesystem::path& path, std::string_view bytes);
 std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full);
 Image decode_radiance(const std::filesystem::path& path, std::string_view bytes);
 std::string encode_radiance(const Image& image);
+/// `path` is where the bytes go to, for the errors.
+std::string encode_png(const std::filesystem::path& path, const Image8& image, bool alpha);
 
 }  // namespace peelray

@@ -79,7 +79,7 @@ Image8 read_ldr(const std::filesystem::path& path) {
     return image;
 }
 
-void write_png(const std::filesystem::path& path, const Image8& image, bool alpha) {
+std::string encode_png(const std::filesystem::path& path, const Image8& image, bool alpha) {
     check_size("write", path, image.width, image.height);
     assert(image.pixels.size() == size_t(image.width) * image.height);
     const size_t components = alpha ? 4 : 3;
@@ -93,7 +93,11 @@ void write_png(const std::filesystem::path& path, const Image8& image, bool alph
     if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), int(components), packed.data(),
                                 int(image.width * components)))
         fail("cannot write {}: not enough memory to compress {} x {} pixels", path.string(), image.width, image.height);
-    store_file(path, bytes);
+    return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image8& image, bool alpha) {
+    store_file(path, encode_png(path, image, alpha));
 }
 
 std::string encode_radiance(const Image& image) {

@@ -92,38 +92,4 @@ glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose) {
     return glm::dvec2(x >> 8, y >> 8) / 16777216.0;
 }
 
-double srgb_to_linear(double c) {
-    return c > 0.04045 ? std::pow((c + 0.055) / 1.055, 2.4) : c / 12.92;
-}
-
-double linear_to_srgb(double c) {
-    return c > 0.0031308 ? 1.055 * std::pow(c, 1 / 2.4) - 0.055 : c * 12.92;
-}
-
-namespace {
-
-/// Narkowicz, "ACES filmic tone mapping curve", 2015.
-glm::dvec3 aces(const glm::dvec3& c) {
-    return (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14);
-}
-
-/// Khronos PBR neutral tone mapper, 2024.
-glm::dvec3 neutral(glm::dvec3 c) {
-    const double darkest = std::min({c.x, c.y, c.z});
-    c -= darkest < 0.08 ? darkest - 6.25 * darkest * darkest : 0.04;
-    const double peak = largest(c), start = 0.76, room = 1 - start;
-    if (peak < start) return c;
-    const double compressed = 1 - room * room / (peak + room - start);
-    const double white = 1 - 1 / (0.15 * (peak - compressed) + 1);
-    return glm::mix(c * (compressed / peak), glm::dvec3(compressed), white);
-}
-
-}  // namespace
-
-glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap) {
-    if (tonemap == Tonemap::aces) color = aces(color);
-    if (tonemap == Tonemap::neutral) color = neutral(color);
-    return glm::clamp(color, 0.0, 1.0);
-}
-
 }  // namespace peelray::optics

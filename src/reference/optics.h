@@ -54,9 +54,4 @@ enum class Purpose : uint32_t { microfacet = 1, sky = 2 };
 /// Sample `index` at a place of the tree of rays, [0, 1)²: bit for bit the GPU's.
 glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose);
 
-double srgb_to_linear(double encoded);
-double linear_to_srgb(double linear);
-/// Exposed linear light to [0, 1].
-glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap);
-
 }  // namespace peelray::optics

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "reference/optics.h"
 #include "reference/shader.h"
+#include "scene/encoding.h"
 
 namespace peelray {
 namespace {
@@ -43,13 +44,6 @@ Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x,
     path.direction = glm::normalize(glm::dvec3(view.forward) + (view.orthographic ? glm::dvec3(0) : offset));
     path.seed = optics::hash3({x, y, 0}).x;
     return path;
-}
-
-uint32_t encode(const glm::dvec3& radiance, double scale, Tonemap tonemap) {
-    const glm::dvec3 color = optics::tone_curve(radiance * scale, tonemap);
-    uint32_t encoded = 0xff000000u;
-    for (int i = 0; i < 3; i++) encoded |= uint32_t(std::lround(optics::linear_to_srgb(color[i]) * 255)) << (8 * i);
-    return encoded;
 }
 
 void prepare(Picture& picture, const PictureSettings& s) {
@@ -126,7 +120,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     }
     sum /= double(s.spp);
     picture.radiance[at] = glm::vec4(sum);
-    picture.encoded[at] = encode(glm::dvec3(sum), std::exp2(double(s.exposure)), s.tonemap);
+    picture.encoded[at] = encode(glm::dvec3(sum), s.exposure, s.tonemap);
 }
 
 /// One thread's share: tiles until there are none left.

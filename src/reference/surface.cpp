@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/optics.h"
+#include "scene/encoding.h"
 
 namespace peelray {
 namespace {
@@ -19,7 +20,7 @@ glm::dvec3 texel(const Texture& texture, int x, int y) {
     const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
     const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
     const uint32_t encoded = texture.texels[row * texture.width + column];
-    const auto channel = [&](int i) { return optics::srgb_to_linear((encoded >> (8 * i) & 255) / 255.0); };
+    const auto channel = [&](int i) { return srgb_to_linear((encoded >> (8 * i) & 255) / 255.0); };
     return {channel(0), channel(1), channel(2)};
 }
 

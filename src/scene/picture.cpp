@@ -7,6 +7,15 @@
 
 namespace peelray {
 
+bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp) {
+    return std::any_of(geometry.materials.begin(), geometry.materials.end(), [&](uint32_t index) {
+        const Material& m = scene.materials[index];
+        if (m.unlit) return false;
+        if (m.transmission > 0 && m.metallic < 1) return true;
+        return spp > 1 ? m.roughness < 0.6f || m.metallic > 0.5f : m.roughness < 0.5f;
+    });
+}
+
 glm::vec2 sample_position(uint32_t index) {
     const double x = 0.5 + index * 0.7548776662466927, y = 0.5 + index * 0.5698402909980532;
     return {float(x - std::floor(x)), float(y - std::floor(y))};

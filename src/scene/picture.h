@@ -45,6 +45,9 @@ struct Picture {
     RayCounts rays;
 };
 
+/// Does any surface start reflected or refracted rays? Rough ones do not (docs/frame.md section 4).
+bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp);
+
 /// Where sample `index` lies in its pixel, [0, 1)²: the R2 sequence (Roberts 2018), whose first member is the centre;
 /// any prefix of it is spread evenly.
 glm::vec2 sample_position(uint32_t index);

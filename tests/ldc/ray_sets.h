@@ -19,7 +19,9 @@ inline const char* name_of(RayKind kind) {
 /// Makes rays of one kind; the same seed gives the same rays.
 class RaySource {
   public:
-    RaySource(const Geometry& geometry, uint32_t seed) : geometry_(geometry), random_(seed) {
+    /// `lift`: how far above their surface those on_surface start, world units.
+    RaySource(const Geometry& geometry, uint32_t seed, double lift = 0)
+        : geometry_(geometry), random_(seed), lift_(lift) {
         for (uint32_t i = 0; i < geometry.triangles.size(); i++)
             if (area_normal(i) != glm::dvec3(0)) usable_.push_back(i);
     }
@@ -97,12 +99,13 @@ class RaySource {
     }
     Ray on_surface() {
         glm::dvec3 normal;
-        const glm::dvec3 p = surface_point(normal);
-        return towards(p, direction());
+        const glm::dvec3 p = surface_point(normal), d = direction();
+        return towards(p + normal * (glm::dot(d, normal) >= 0 ? lift_ : -lift_), d);
     }
 
     const Geometry& geometry_;
     std::mt19937 random_;
+    double lift_;
     std::uniform_real_distribution<double> uniform_{0, 1};
     std::vector<uint32_t> usable_;
 };

@@ -1,5 +1,5 @@
 // The camera, auxiliary pictures, bands, antialiasing.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,9 +1,10 @@
-// What the picture tests of the GPU share.
+// Pictures by the GPU, for the tests here and those of ../closed_forms.
 #pragma once
+
+#include <scenes.h>
 
 #include "../gpu/device_fixture.h"
 #include "render/renderer.h"
-#include "scenes.h"
 
 namespace peelray {
 

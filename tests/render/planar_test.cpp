@@ -1,5 +1,5 @@
 // Planar hits: a plane's worth of truth. Few pixels may differ from exact ones.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,5 +1,5 @@
 // Exposure, tone curves and encoding; impossible settings.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,5 +1,5 @@
 // Hard shadows: outlines, contact, acne; lamps.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

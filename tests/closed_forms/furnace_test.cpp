@@ -1,5 +1,5 @@
 // Bodies in uniform light: what is lost or made up shows at once.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

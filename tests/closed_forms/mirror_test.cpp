@@ -1,5 +1,5 @@
 // A plane mirror shows the mirrored scene; two of them show as many images as there are bounces.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,5 +1,5 @@
 // Refraction in closed form: slabs, a prism, absorption, glass behind glass.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

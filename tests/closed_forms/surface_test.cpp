@@ -1,5 +1,5 @@
 // Textures, vertex colours, switches, and what must never be seen: NaN.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,5 +1,5 @@
 // Where light comes from on a miss: orientation, seam, sun.
-#include "pictures.h"
+#include <pictures.h>
 
 namespace peelray {
 namespace {

@@ -1,0 +1,288 @@
+// `peelray compare`.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "cli/picture_maker.h"
+#include "cli/stats.h"
+#include "image/report.h"
+#include "scene/encoding.h"
+
+namespace peelray {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// One column of the comparison.
+struct Entry {
+    std::string name, tracer, hit;  ///< tracer: empty for another program's picture
+    fs::path file;                  ///< of another program's picture
+    std::string command;
+    Image8 encoded;
+    Image radiance;  ///< empty: not known
+    Json stats;
+};
+
+/// As a POSIX shell takes it for one word.
+std::string quoted(const std::string& word) {
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:,=+@%", c); };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string out;
+    for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return fmt::format("'{}'", out);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+    return line;
+}
+
+/// The command that renders one picture of the comparison.
+std::string render_command(const CompareArguments& a, const std::string& name, const std::string& tracer,
+                           const std::string& hit) {
+    std::string file = name + ".png";
+    std::replace(file.begin(), file.end(), ' ', '-');
+    std::vector<std::string> words = {"peelray", "render", a.scene, "-o", file};
+    for (size_t i = 0; i < a.given.size(); i++) {
+        if (a.given[i] == "--repeat" && tracer == "reference")
+            i++;  // measures GPU frames
+        else
+            words.push_back(a.given[i]);
+    }
+    words.insert(words.end(), {"--tracer", tracer});
+    if (tracer == "ldc") words.insert(words.end(), {"--hit", hit});
+    return joined(words);
+}
+
+std::string compare_command(const CompareArguments& a) {
+    const auto list = [](const std::vector<std::string>& names) {
+        std::string text;
+        for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+        return text;
+    };
+    std::vector<std::string> words = {"peelray", "compare", a.scene, "-o", a.output.string()};
+    words.insert(words.end(), a.given.begin(), a.given.end());
+    words.insert(words.end(), {"--tracers", list(a.tracers), "--hit", list(a.hits)});
+    for (const fs::path& picture : a.pictures) words.insert(words.end(), {"--picture", picture.string()});
+    return joined(words);
+}
+
+std::vector<Entry> plan(const CompareArguments& a) {
+    std::vector<Entry> entries;
+    for (const std::string& tracer : a.tracers) {
+        if (tracer != "ldc") {
+            entries.push_back({tracer, tracer, "auto", {}, render_command(a, tracer, tracer, "")});
+            continue;
+        }
+        for (const std::string& hit : a.hits) {
+            const std::string name = a.hits.size() > 1 ? fmt::format("ldc {}", hit) : "ldc";
+            entries.push_back({name, tracer, hit, {}, render_command(a, name, tracer, hit)});
+        }
+    }
+    for (const Entry& entry : entries) {
+        TracingArguments tracing = a.tracing;
+        tracing.tracer = entry.tracer;
+        tracing.hit = entry.hit;
+        tracing.check();
+    }
+    return entries;
+}
+
+bool is_linear(const fs::path& path) {
+    return path.extension() == ".exr" || path.extension() == ".hdr";
+}
+
+/// A picture that another program made.
+Entry read_picture(const CompareArguments& a, const fs::path& path) {
+    Entry entry{path.filename().string(), "", "", path, fmt::format("--picture {}", path.string())};
+    if (is_linear(path)) {
+        entry.radiance = read_hdr(path);
+        const RenderSettings settings = settings_of(a);
+        entry.encoded = {entry.radiance.width, entry.radiance.height, {}};
+        for (const glm::vec4& pixel : entry.radiance.pixels)
+            entry.encoded.pixels.push_back(encode(glm::dvec3(pixel), settings.exposure, settings.tonemap));
+    } else {
+        entry.encoded = read_ldr(path);
+    }
+    const Image8& picture = entry.encoded;
+    if (picture.width != a.size.x || picture.height != a.size.y)
+        fail("{} has {}x{} pixels, the others {}x{}: pictures must have the same size (--size)", path.string(),
+             picture.width, picture.height, a.size.x, a.size.y);
+    entry.stats = {{"file", path.string()}};
+    return entry;
+}
+
+void render(Entry& entry, PictureMaker& maker, RenderSettings settings) {
+    settings.hit_auto = entry.hit == "auto";
+    settings.hit = entry.hit == "planar" ? HitTest::planar : HitTest::exact;
+    MadePicture made = maker.make(entry.tracer, settings);
+    entry.encoded = {made.picture.width, made.picture.height, std::move(made.picture.encoded)};
+    entry.radiance = {made.picture.width, made.picture.height, std::move(made.picture.radiance)};
+    entry.stats = std::move(made.stats);
+}
+
+/// The picture that the others are compared with.
+size_t choose_reference(const std::vector<Entry>& entries) {
+    for (size_t i = 0; i < entries.size(); i++)
+        if (entries[i].tracer == "reference") return i;
+    return entries.size() - 1;
+}
+
+Difference difference(const Entry& reference, const Entry& test) {
+    if (!reference.radiance.pixels.empty() && !test.radiance.pixels.empty())
+        return compare(reference.encoded, test.encoded, reference.radiance, test.radiance);
+    return compare(reference.encoded, test.encoded);
+}
+
+std::string ms(const Json& value) {
+    return value.is_number() ? fmt::format("{:.2f} ms", value.get<double>()) : "not measured";
+}
+
+std::vector<ReportFact> facts_of(const Entry& entry) {
+    const Json& s = entry.stats;
+    std::vector<ReportFact> facts;
+    if (s.contains("device"))
+        facts.emplace_back("device", s["device"].get<std::string>() + ", " + s["driver"].get<std::string>());
+    if (s.contains("frame_ms")) {
+        const bool cpu = entry.tracer == "reference";
+        facts.emplace_back(cpu ? "rays and shading" : "frame", ms(s["frame_ms"]));
+        if (s.value("build_ms", 0.0) > 0)
+            facts.emplace_back(cpu ? "hierarchy" : "of which the cube", ms(s["build_ms"]));
+    }
+    if (s.contains("rays")) {
+        uint64_t secondary = 0;
+        for (const char* kind : {"reflection", "refraction", "shadow", "ambient"})
+            secondary += s["rays"][kind].get<uint64_t>();
+        facts.emplace_back("secondary rays", fmt::format("{:.2f} M", double(secondary) * 1e-6));
+    }
+    if (s.contains("ldc")) {
+        const Json& cube = s["ldc"];
+        facts.emplace_back("cube", fmt::format("{}³, {} hits", cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
+        facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
+        facts.emplace_back("cube in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
+    }
+    if (s.contains("cubemap")) {
+        const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];
+        facts.emplace_back("of which the maps", ms(s["cubemap"]["maps_ms"]));
+        facts.emplace_back(
+            "cube maps", fmt::format("{} of 6 × {}²", probes["count"].get<uint32_t>(), probes["face"].get<uint32_t>()));
+        facts.emplace_back("shadow maps",
+                           fmt::format("{} of {}²", shadows["count"].get<uint32_t>(), shadows["size"].get<uint32_t>()));
+        facts.emplace_back(
+            "maps in memory",
+            fmt::format("{:.1f} MiB", (probes["bytes"].get<double>() + shadows["bytes"].get<double>()) / (1 << 20)));
+    }
+    return facts;
+}
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json json_of(const CompareArguments& a, const Report& report, const std::vector<Entry>& entries,
+             const PreparedScene& scene) {
+    Json json = {{"scene", a.scene},
+                 {"command", report.command},
+                 {"commit", build_commit()},
+                 {"image", {a.size.x, a.size.y}},
+                 {"triangles", scene.geometry.triangles.size()},
+                 {"reference", entries[report.reference].name},
+                 {"notes", report.notes}};
+    for (size_t i = 0; i < entries.size(); i++) {
+        Json picture = {{"name", entries[i].name}, {"command", entries[i].command}};
+        if (const auto& d = report.pictures[i].difference)
+            picture["difference"] = {{"psnr_db", number(d->psnr)},
+                                     {"identical", std::isinf(d->psnr)},
+                                     {"ssim", d->ssim},
+                                     {"flip", d->flip},
+                                     {"hdr_flip", number(d->hdr_flip)},
+                                     {"share_different", d->different}};
+        picture["stats"] = entries[i].stats;
+        json["pictures"].push_back(std::move(picture));
+    }
+    return json;
+}
+
+/// All pictures in a row, in the order of the report.
+Image8 strip_of(const std::vector<Entry>& entries) {
+    constexpr uint32_t gap = 8;
+    const uint32_t width = entries[0].encoded.width, height = entries[0].encoded.height;
+    Image8 strip{uint32_t(entries.size()) * (width + gap) - gap, height, {}};
+    strip.pixels.assign(size_t(strip.width) * height, 0xffffffffu);
+    for (size_t i = 0; i < entries.size(); i++)
+        for (uint32_t y = 0; y < height; y++)
+            std::copy_n(&entries[i].encoded.pixels[size_t(y) * width], width,
+                        &strip.pixels[size_t(y) * strip.width + i * (width + gap)]);
+    return strip;
+}
+
+Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, const PreparedScene& scene) {
+    Report report;
+    report.title = a.scene;
+    report.command = compare_command(a);
+    report.reference = choose_reference(entries);
+    report.facts = {{"triangles", fmt::format("{}", scene.geometry.triangles.size())},
+                    {"picture", fmt::format("{} × {}, {} sample{} per pixel, {} bounces", a.size.x, a.size.y, a.spp,
+                                            a.spp == 1 ? "" : "s", a.bounces)},
+                    {"program", fmt::format("peelray {}", build_commit())}};
+    if (!is_reflective(scene.scene, scene.geometry, a.spp))
+        report.notes.push_back(
+            "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
+    const Entry& reference = entries[report.reference];
+    if (reference.tracer != "reference" && entries.size() > 1)
+        report.notes.push_back(
+            fmt::format("without --tracers reference the pictures are compared with '{}'", reference.name));
+    for (const Entry& entry : entries) {
+        ReportPicture picture{entry.name, entry.command, entry.encoded, facts_of(entry), {}};
+        if (&entry != &reference) picture.difference = difference(reference, entry);
+        report.pictures.push_back(std::move(picture));
+    }
+    return report;
+}
+
+void print(const CompareArguments& a, const Report& report) {
+    fmt::print("{}: {} pictures, compared with '{}'\n", a.output.string(), report.pictures.size(),
+               report.pictures[report.reference].name);
+    for (const ReportPicture& picture : report.pictures)
+        if (const auto& d = picture.difference)
+            fmt::print("  {:<14} FLIP {:.5f}  HDR-FLIP {:.5f}  SSIM {:.5f}  PSNR {:6.2f} dB  pixels off {:.4f} %\n",
+                       picture.name, d->flip, d->hdr_flip, d->ssim, d->psnr, d->different * 100);
+}
+
+}  // namespace
+
+void run_compare(const CompareArguments& a) {
+    check_ranges(a);
+    const std::string extension = a.output.extension().string();
+    if (extension != ".html" && extension != ".htm")
+        fail("the report is an HTML file: name '{}' .html", a.output.string());
+    if (!a.strip.empty() && a.strip.extension() != ".png")
+        fail("the strip of pictures is a PNG: name '{}' .png", a.strip.string());
+    std::vector<Entry> entries = plan(a);
+    std::vector<fs::path> outputs = {a.output}, inputs = {a.scene, a.env};
+    for (const fs::path& path : {a.json, a.strip})
+        if (!path.empty()) outputs.push_back(path);
+    inputs.insert(inputs.end(), a.pictures.begin(), a.pictures.end());
+    check_outputs(outputs, inputs);
+    std::vector<Entry> given;
+    for (const fs::path& path : a.pictures) given.push_back(read_picture(a, path));
+
+    const PreparedScene scene = prepare_scene(a);
+    watch_interrupts();
+    PictureMaker maker(scene, a.device);
+    for (Entry& entry : entries) render(entry, maker, settings_of(a));
+    entries.insert(entries.begin(), given.begin(), given.end());
+    const Report report = report_of(a, entries, scene);
+    check_interrupt();
+    for (const std::string& text : report.notes) print_note(text);
+    write_report(a.output, report);
+    if (!a.json.empty()) write_json(a.json, json_of(a, report, entries, scene));
+    if (!a.strip.empty()) write_png(a.strip, strip_of(entries));
+    print(a, report);
+}
+
+}  // namespace peelray

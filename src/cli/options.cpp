@@ -1,0 +1,284 @@
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "base/error.h"
+#include "cli/values.h"
+#include "scene/scene.h"
+
+namespace peelray {
+namespace {
+
+/// An option whose text `parse` turns into a value. Text of another form than `form` is wrong usage.
+template <typename Value, typename Parsed>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value,
+                        std::optional<Parsed> (*parse)(const std::string&), const std::string& form,
+                        const std::string& help) {
+    return app.add_option_function<std::string>(
+        name,
+        [=, &value](const std::string& text) {
+            const auto parsed = parse(text);
+            if (!parsed) throw CLI::ValidationError(name, fmt::format("'{}' is not {}", text, form));
+            value = *parsed;
+        },
+        help);
+}
+
+/// An option that is one number.
+template <typename Number, typename Value>
+CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value, const std::string& help) {
+    const auto parse = +[](const std::string& text) { return parse_number<Number>(text); };
+    return add_parsed(app, name, value, parse, std::is_integral_v<Number> ? "a whole number from 0 up" : "a number",
+                      help)
+        ->type_name(std::is_integral_v<Number> ? "N" : "X");
+}
+
+CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
+                        const std::vector<std::string>& choices, const std::string& help) {
+    std::string known;
+    for (const std::string& choice : choices) known += (known.empty() ? "" : "|") + choice;
+    const auto check = [=](const std::string& text) {
+        const bool found = std::find(choices.begin(), choices.end(), text) != choices.end();
+        return found ? "" : fmt::format("'{}' is not one of {}", text, known);
+    };
+    return app.add_option(name, value, help)->check(check)->type_name(known)->capture_default_str();
+}
+
+void add_device_options(CLI::App& app, DeviceArguments& device) {
+    app.add_option("--device", device.device,
+                   "by number or part of its name, see 'peelray devices'; default: the fastest kind there is")
+        ->type_name("N|NAME")
+        ->group("Device");
+    app.add_flag("--validate", device.validate, "run under the Vulkan validation layers; any message is an error")
+        ->group("Device");
+}
+
+const std::vector<std::string> kHits = {"auto", "exact", "planar", "tolerance"};
+const char* const kHitHelp =
+    "exact: the triangles themselves; planar: the samples' planes, at a cost that does not depend on the number of "
+    "triangles; auto: exact up to a few million triangles; tolerance: not built yet";
+
+void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
+    const char* group = "Tracing";
+    add_parsed(app, "--ldc", tracing.ldc, parse_resolution, "auto or a number from 16 to 2048",
+               "resolution of the layered depth images, 16 to 2048; auto: by the number of triangles")
+        ->type_name("auto|N")
+        ->default_str("auto")
+        ->group(group);
+    add_number<double>(app, "--tolerance", tracing.tolerance, "distance of a hit of --hit tolerance, world units")
+        ->default_str("0.001")
+        ->group(group);
+    add_choice(app, "--builder", tracing.builder, {"auto", "compute", "abuffer", "peel"},
+               "how the layered depth cube is built (abuffer and peel: not built yet)")
+        ->group(group);
+    add_choice(app, "--traversal", tracing.traversal, {"voxel", "mipmap", "two-level"},
+               "how rays walk through the cube (mipmap and two-level: not built yet)")
+        ->group(group);
+    add_parsed(app, "--block", tracing.block, parse_block, "a number of pixels such as 8 or 8x4",
+               "pixels per block of --traversal two-level")
+        ->type_name("N|NxM")
+        ->default_str("8")
+        ->group(group);
+}
+
+}  // namespace
+
+std::string builtin_list() {
+    std::string text = "Built-in scenes:\n";
+    for (const BuiltinScene& scene : builtin_scenes())
+        text += fmt::format("  builtin:{:<10} {}\n", scene.name, scene.description);
+    return text;
+}
+
+const char* const kSceneHelp = "a file (.gltf, .glb, .obj, .ply, .stl, .off) or builtin:NAME";
+
+namespace {
+
+/// What a picture shows and how it is made; `compares`: the tracer and the hit test are lists of the caller's.
+void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
+    app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
+    add_parsed(app, "--size", a.size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
+               "width and height in pixels")
+        ->type_name("WIDTHxHEIGHT")
+        ->default_str("1280x1024");
+
+    const char* view = "View";
+    const char* vector = "three numbers X,Y,Z";
+    add_parsed(app, "--eye", a.eye, parse_vector, vector, "where the camera stands")->type_name("X,Y,Z")->group(view);
+    add_parsed(app, "--look", a.look, parse_vector, vector, "the point it looks at; default: the scene's centre")
+        ->type_name("X,Y,Z")
+        ->group(view);
+    add_parsed(app, "--up", a.up, parse_vector, vector, "its upward direction; default: 0,1,0")
+        ->type_name("X,Y,Z")
+        ->group(view);
+    add_number<float>(app, "--fov", a.fov, "vertical field of view; default: the camera's own, 40 where there is none")
+        ->type_name("DEGREES")
+        ->group(view);
+    app.add_option("--camera", a.camera,
+                   "a camera of the scene, see 'peelray info SCENE'; default: the first, or the whole scene in view")
+        ->type_name("NAME|N")
+        ->group(view);
+    add_number<double>(app, "--time", a.time, "moment of the animation (not built yet: only 0)")
+        ->type_name("SECONDS")
+        ->group(view);
+    app.add_option("--frames", a.frames, "frames of the animation (not built yet)")
+        ->type_name("A:B")
+        ->excludes("--time")
+        ->group(view);
+    add_number<double>(app, "--fps", a.fps, "frames per second (not built yet)")->group(view);
+
+    const char* light = "Light";
+    CLI::Option* env = app.add_option("--env", a.env, "environment map, equirectangular .hdr or .exr")
+                           ->type_name("FILE")
+                           ->group(light);
+    CLI::Option* sky =
+        app.add_flag("--sky", a.sky, "procedural sky with a sun; the default where the scene has no lights")
+            ->excludes(env)
+            ->group(light);
+    add_parsed(app, "--background", a.background, parse_vector, "three numbers R,G,B",
+               "one colour from everywhere, linear, from 0 up")
+        ->type_name("R,G,B")
+        ->excludes(env)
+        ->excludes(sky)
+        ->group(light);
+    add_number<float>(app, "--exposure", a.exposure, "of a .png, in stops: each doubles the brightness")
+        ->default_str("0")
+        ->type_name("STOPS")
+        ->group(light);
+    add_choice(app, "--tonemap", a.tonemap, {"none", "aces", "neutral"}, "tone curve of a .png")->group(light);
+
+    const char* effects = "Effects";
+    if (!compares)
+        add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr", "none"},
+                   "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in double "
+                   "precision; cubemap: the baseline without rays, cube maps of each object's surroundings and shadow "
+                   "maps; none: neither; khr: not built yet")
+            ->group(effects);
+    add_parsed(app, "--effects", a.effects, parse_effects,
+               "a list out of reflection,refraction,shadow,ambient, or none",
+               "what is traced, a list out of reflection,refraction,shadow,ambient, or none")
+        ->type_name("LIST")
+        ->default_str("reflection,refraction,shadow")
+        ->group(effects);
+    add_number<uint32_t>(app, "--bounces", a.bounces, "reflections and refractions in a row, 0 to 16")
+        ->default_str("4")
+        ->group(effects);
+    add_number<uint32_t>(app, "--spp", a.spp, "samples per pixel: smooth edges and rough reflections")
+        ->default_str("1")
+        ->group(effects);
+    add_choice(app, "--material", a.material, {"mirror", "glass", "clay"}, "make every surface of this")
+        ->group(effects);
+    app.add_flag("--floor", a.floor, "put the scene on a floor that mirrors a little")->group(effects);
+    if (!compares) add_choice(app, "--hit", a.tracing.hit, kHits, kHitHelp)->group("Tracing");
+    add_tracing_options(app, a.tracing);
+
+    add_number<uint32_t>(app, "--repeat", a.repeat,
+                         "for measuring: 2 or more frames after a first one that warms up; times are medians")
+        ->default_str("1")
+        ->group("More output");
+    add_device_options(app, a.device);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, RenderArguments& a) {
+    CLI::App& app = *program.add_subcommand("render", "Render a scene to a picture");
+    app.add_option("-o,--output", a.output, "picture to write: .png (tone-mapped sRGB), .exr or .hdr (linear radiance)")
+        ->required()
+        ->type_name("FILE");
+    add_picture_options(app, a, false);
+    const char* output = "More output";
+    add_parsed(app, "--aov", a.aovs, parse_aovs, "a list out of depth,normal,albedo,position,triangle,material, or all",
+               "also write these to NAME.KIND.exr beside NAME.png: a list out of "
+               "depth,normal,albedo,position,triangle,material, or all")
+        ->type_name("LIST")
+        ->group(output);
+    app.add_option("--stats", a.stats, "also write times, rays and memory as JSON")->type_name("FILE")->group(output);
+    app.footer(builtin_list() +
+               "\nExamples:\n"
+               "  peelray render builtin:teapots -o teapots.png --spp 16\n"
+               "  peelray render model.glb -o picture.png --env studio.hdr --eye 2,1,3 --look 0,0.5,0\n"
+               "  peelray render bunny.off -o mirror.png --material mirror --floor --stats stats.json");
+}
+
+CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
+    CLI::App& app =
+        *program.add_subcommand("compare", "Render a scene with several tracers and report how they differ");
+    app.add_option("-o,--output", a.output, "report to write: one HTML file that needs nothing else")
+        ->required()
+        ->type_name("FILE.html");
+    add_picture_options(app, a, true);
+    const char* group = "Comparison";
+    add_parsed(app, "--tracers", a.tracers, parse_tracers, "a list out of cubemap,ldc,reference,none,khr, each once",
+               "who renders, a list out of cubemap,ldc,reference,none,khr (khr: not built yet)")
+        ->type_name("LIST")
+        ->default_str("cubemap,ldc,reference")
+        ->group(group);
+    add_parsed(
+        app, "--hit", a.hits, parse_hits, "a list out of auto,exact,planar,tolerance, each once",
+        "hit tests of ldc, one picture each, a list out of auto,exact,planar,tolerance (tolerance: not built yet)")
+        ->type_name("LIST")
+        ->default_str("auto")
+        ->group(group);
+    app.add_option(
+           "--picture", a.pictures,
+           "also compare this picture of the same scene and size, by another program: .png, .jpg (as it is) or .exr, "
+           ".hdr (tone-mapped like the others); may be given several times")
+        ->type_name("FILE")
+        ->group(group)
+        ->allow_extra_args(false);
+    app.add_option("--json", a.json, "also write metrics and stats as JSON")->type_name("FILE")->group(group);
+    app.add_option("--strip", a.strip, "also write all pictures side by side")->type_name("FILE.png")->group(group);
+    app.footer(
+        "Pictures are compared with the one of --tracer reference, or with the last one where there is none.\n\n"
+        "Examples:\n"
+        "  peelray compare builtin:teapots -o report.html\n"
+        "  peelray compare model.glb -o report.html --tracers ldc,reference --hit exact,planar --ldc 1024");
+    return app;
+}
+
+void add_trace(CLI::App& program, TraceArguments& a) {
+    CLI::App& app = *program.add_subcommand("trace", "Trace the rays of a .npy file and write what they hit");
+    app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
+    app.add_option(
+           "--rays", a.rays,
+           "rays to trace: float32 (n, 8): ox oy oz tmin dx dy dz tmax, in world units; t counts in lengths of d")
+        ->required()
+        ->type_name("FILE.npy");
+    app.add_option("--out", a.hits,
+                   "hits to write: structured (n): t f4 (+inf: a miss), triangle u4 (in file order), u f4, v f4")
+        ->required()
+        ->type_name("FILE.npy");
+    app.add_flag("--any-hit", a.any_hit, "stop at any hit, not only at the nearest: for shadow rays");
+    app.add_option("--stats", a.stats, "also write times and memory as JSON")->type_name("FILE");
+    add_number<uint32_t>(app, "--repeat", a.repeat,
+                         "for measuring: trace 2 or more times after a first one that warms up; times are medians")
+        ->default_str("1");
+    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr"}, "only ldc is built yet")
+        ->group("Tracing");
+    add_choice(app, "--hit", a.tracing.hit, kHits, kHitHelp)->group("Tracing");
+    add_tracing_options(app, a.tracing);
+    add_device_options(app, a.device);
+    app.footer(
+        "Example, with NumPy: one ray from (0, 1, 9) along -z:\n"
+        "  python3 -c \"import numpy as n; n.save('rays.npy', n.array([[0,1,9,0, 0,0,-1,100]], n.float32))\"\n"
+        "  peelray trace builtin:teapots --rays rays.npy --out hits.npy\n"
+        "  python3 -c \"import numpy as n; print(n.load('hits.npy'))\"");
+}
+
+std::vector<std::string> given_options(const CLI::App& app) {
+    static const std::vector<std::string> own = {"--output", "--tracers", "--hit", "--picture", "--json", "--strip"};
+    std::vector<std::string> words;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || !name.starts_with("--") || std::find(own.begin(), own.end(), name) != own.end())
+            continue;
+        words.push_back(name);
+        if (option->get_expected_max() > 0)
+            for (const std::string& value : option->results()) words.push_back(value);
+    }
+    return words;
+}
+
+}  // namespace peelray

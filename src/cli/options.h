@@ -1,0 +1,21 @@
+// The options of each command: what a user may type, and what it means. Private to src/cli.
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "cli/program.h"
+
+namespace peelray {
+
+void add_render(CLI::App& program, RenderArguments& arguments);
+CLI::App& add_compare(CLI::App& program, CompareArguments& arguments);
+void add_trace(CLI::App& program, TraceArguments& arguments);
+
+/// The options of a picture that were given to `compare`, as words that `render` takes as well.
+std::vector<std::string> given_options(const CLI::App& compare);
+
+/// For help pages.
+std::string builtin_list();
+extern const char* const kSceneHelp;
+
+}  // namespace peelray

@@ -1,0 +1,19 @@
+// From radiance to what a display shows, in double precision; the GPU's pass of the same rules is shaders/tonemap.comp.
+#pragma once
+
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// Of one channel, [0, 1] (IEC 61966-2-1).
+double srgb_to_linear(double encoded);
+double linear_to_srgb(double linear);
+
+/// Exposed linear light to [0, 1].
+glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap);
+
+/// A pixel of the encoded picture: exposed by `exposure` stops, tone-mapped, 8-bit sRGB, red in the lowest byte,
+/// opaque.
+uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap);
+
+}  // namespace peelray

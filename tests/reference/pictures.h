@@ -1,0 +1,37 @@
+// Pictures by the double-precision path tracer, for the tests here and those of ../closed_forms.
+#pragma once
+
+#include <scenes.h>
+
+#include "reference/path_tracer.h"
+
+namespace peelray {
+
+enum class Tracer : uint8_t { ldc, none };
+
+/// The settings that the GPU's tests know; the reference has no cube to choose a resolution for.
+struct RenderSettings : PictureSettings {
+    uint32_t ldc = 0;
+    Tracer tracer = Tracer::ldc;  ///< none: no effect is traced
+};
+using RenderResult = Picture;
+
+inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
+    RenderSettings s;
+    s.width = s.height = size;
+    s.camera = camera;
+    return s;
+}
+
+class PictureTest : public testing::Test {
+  protected:
+    Picture render(const Stage& stage, const Environment& environment, RenderSettings settings, unsigned threads = 0) {
+        if (settings.tracer == Tracer::none)
+            settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
+        const Geometry geometry = flatten(stage.scene);
+        return PathTracer(stage.scene, geometry, environment).render(settings, {}, threads);
+    }
+    const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
+};
+
+}  // namespace peelray
