@@ -109,6 +109,7 @@ for kind in triangle normal albedo depth; do
     aov_to_png "$kind" "$work/glass.$kind.exr" "docs/frame_$kind.png"
 done
 figure frame_untraced builtin:glass --tracer none
+figure frame_cubemap builtin:glass --tracer cubemap
 for bounces in 0 1 4; do figure "frame_bounces_$bounces" builtin:glass --bounces "$bounces"; done
 
 # docs/scenes.md: the built-in scenes (builtin:glass is frame_bounces_4.png).
@@ -124,4 +125,4 @@ if [ "${2:-}" = readme ]; then
     shrink docs/glass.png docs/teapots.png
 fi
 
-shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/scene_*.png
+shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/frame_cubemap.png docs/scene_*.png

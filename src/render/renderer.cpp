@@ -275,7 +275,11 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     times = {};
     frame_ms = 0;
     if (settings.tracer == Tracer::ldc) build_cube();
-    if (settings.tracer == Tracer::cubemap) maps.render(commands, queues, [&] { count_times(); });
+    if (settings.tracer == Tracer::cubemap)
+        maps.render(commands, queues, [&] {
+            count_times();
+            if (progress) progress(0);  // where an interrupt ends the work
+        });
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
             if (row == 0) record_visibility(sample);

@@ -104,6 +104,27 @@ TEST_F(RenderCommand, StatsWithoutSecondaryRays) {
     for (const char* key : {"reflection", "refraction", "shadow", "ambient"}) EXPECT_EQ(stats["rays"][key], 0) << key;
 }
 
+TEST_F(RenderCommand, CubeMaps) {
+    const Outcome run = render("builtin:teapots", {"--stats", out("s.json"), "--tracer", "cubemap", "--bounces", "1",
+                                                   "--effects", "reflection,refraction,shadow,ambient", "--validate"});
+    expect_done(run, {"a.png", "s.json"});
+    EXPECT_NE(run.err.find("peelray: note: --tracer cubemap has no ambient"), std::string::npos) << run.err;
+    const auto stats = nlohmann::json::parse(get(out("s.json")));
+    EXPECT_EQ(stats["tracer"], "cubemap");
+    EXPECT_FALSE(stats.contains("ldc"));
+    EXPECT_EQ(stats["cubemap"]["probes"]["count"], 3);  // the floor and two teapots
+    EXPECT_EQ(stats["cubemap"]["probes"]["rounds"], 1);
+    EXPECT_GE(stats["cubemap"]["probes"]["face"], 16);
+    EXPECT_GT(stats["cubemap"]["probes"]["bytes"], 0);
+    EXPECT_EQ(stats["cubemap"]["shadow_maps"]["count"], 1);
+    EXPECT_GT(stats["cubemap"]["shadow_maps"]["bytes"], 0);
+    std::vector<std::string> names;
+    for (const auto& pass : stats["passes"]) names.push_back(pass["name"]);
+    for (const std::string name :
+         {"probe/map_visibility", "probe/cubemap_scatter", "shadow_map/shadow_depth", "cubemap_scatter"})
+        EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+}
+
 TEST_F(RenderCommand, SameInputSameFile) {
     // Linear half floats: 8 bits of a .png would hide small differences.
     for (const std::string scene : {"builtin:teapots", "builtin:glass"})

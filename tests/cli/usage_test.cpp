@@ -126,7 +126,6 @@ TEST_F(Usage, NotBuiltYet) {
                     {{"--builder", "abuffer"}, "not built into this version"},
                     {{"--tracer", "khr"}, "not built into this version: use --tracer ldc"},
                     {{"--tracer", "reference"}, "not built into this version"},
-                    {{"--tracer", "cubemap"}, "not built into this version"},
                     {{"--hit", "tolerance"}, "not built into this version"},
                     {{"--traversal", "mipmap"}, "not built into this version"},
                     {{"--traversal", "two-level"}, "not built into this version"},
@@ -136,6 +135,14 @@ TEST_F(Usage, NotBuiltYet) {
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
     expect_refused(run({"compare", in("cube.obj"), "-o", out("r.html")}), 1,
                    "'compare' is not built into this version");
+}
+
+TEST_F(Usage, CubeMapsTraceNoRays) {
+    put("cube.obj", kCube);
+    put("rays.npy", rays_npy({0.5f, 0.5f, 3, 0, 0, 0, -1, 9}));
+    expect_refused(
+        run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy"), "--tracer", "cubemap"}), 1,
+        "--tracer cubemap traces no rays from files: use --tracer ldc");
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
