@@ -183,6 +183,12 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+/// The pixel where an error map is largest; the first of several.
+glm::uvec2 worst_pixel(const ErrorMap& map) {
+    const auto at = size_t(std::max_element(map.values.begin(), map.values.end()) - map.values.begin());
+    return {uint32_t(at % map.width), uint32_t(at / map.width)};
+}
+
 Json json_of(const CompareArguments& a, const Report& report, const std::vector<Entry>& entries,
              const PreparedScene& scene) {
     Json json = {{"scene", a.scene},
@@ -200,7 +206,8 @@ Json json_of(const CompareArguments& a, const Report& report, const std::vector<
                                      {"ssim", d->ssim},
                                      {"flip", d->flip},
                                      {"hdr_flip", number(d->hdr_flip)},
-                                     {"share_different", d->different}};
+                                     {"share_different", d->different},
+                                     {"worst_pixel", {worst_pixel(d->map).x, worst_pixel(d->map).y}}};
         picture["stats"] = entries[i].stats;
         json["pictures"].push_back(std::move(picture));
     }
@@ -218,6 +225,31 @@ Image8 strip_of(const std::vector<Entry>& entries) {
             std::copy_n(&entries[i].encoded.pixels[size_t(y) * width], width,
                         &strip.pixels[size_t(y) * strip.width + i * (width + gap)]);
     return strip;
+}
+
+/// Surroundings of each picture's worst pixel, magnified, one row each: the picture, the reference, the error map.
+Image8 worst_of(const Report& report) {
+    const Image8& reference = report.pictures[report.reference].picture;
+    const uint32_t side = std::min({48u, reference.width, reference.height}), zoom = 6, gap = 8;
+    const uint32_t tile = side * zoom;
+    Image8 sheet{3 * (tile + gap) - gap, 0, {}};
+    for (const ReportPicture& picture : report.pictures) {
+        if (!picture.difference) continue;
+        const Image8 errors = colorize(picture.difference->map);
+        const glm::uvec2 room(reference.width - side, reference.height - side);
+        const glm::uvec2 centre = worst_pixel(picture.difference->map), half(side / 2);
+        const glm::uvec2 corner = glm::min(glm::max(centre, half) - half, room);
+        const uint32_t top = sheet.height ? sheet.height + gap : 0;
+        sheet.height = top + tile;
+        sheet.pixels.resize(size_t(sheet.width) * sheet.height, 0xffffffffu);
+        const Image8* columns[] = {&picture.picture, &reference, &errors};
+        for (uint32_t column = 0; column < 3; column++)
+            for (uint32_t y = 0; y < tile; y++)
+                for (uint32_t x = 0; x < tile; x++)
+                    sheet.pixels[size_t(top + y) * sheet.width + column * (tile + gap) + x] =
+                        columns[column]->pixels[size_t(corner.y + y / zoom) * reference.width + corner.x + x / zoom];
+    }
+    return sheet;
 }
 
 Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, const PreparedScene& scene) {
@@ -260,11 +292,13 @@ void run_compare(const CompareArguments& a) {
     const std::string extension = a.output.extension().string();
     if (extension != ".html" && extension != ".htm")
         fail("the report is an HTML file: name '{}' .html", a.output.string());
-    if (!a.strip.empty() && a.strip.extension() != ".png")
-        fail("the strip of pictures is a PNG: name '{}' .png", a.strip.string());
+    for (const fs::path& path : {a.strip, a.worst})
+        if (!path.empty() && path.extension() != ".png") fail("{} would be a PNG: name it .png", path.string());
     std::vector<Entry> entries = plan(a);
+    if (!a.worst.empty() && entries.size() + a.pictures.size() < 2)
+        fail("{} needs two pictures to compare: name more --tracers or a --picture", a.worst.string());
     std::vector<fs::path> outputs = {a.output}, inputs = {a.scene, a.env};
-    for (const fs::path& path : {a.json, a.strip})
+    for (const fs::path& path : {a.json, a.strip, a.worst})
         if (!path.empty()) outputs.push_back(path);
     inputs.insert(inputs.end(), a.pictures.begin(), a.pictures.end());
     check_outputs(outputs, inputs);
@@ -282,6 +316,7 @@ void run_compare(const CompareArguments& a) {
     write_report(a.output, report);
     if (!a.json.empty()) write_json(a.json, json_of(a, report, entries, scene));
     if (!a.strip.empty()) write_png(a.strip, strip_of(entries));
+    if (!a.worst.empty()) write_png(a.worst, worst_of(report));
     print(a, report);
 }
 

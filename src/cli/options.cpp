@@ -97,7 +97,6 @@ namespace {
 
 /// What a picture shows and how it is made; `compares`: the tracer and the hit test are lists of the caller's.
 void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
-    app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
     add_parsed(app, "--size", a.size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
                "width and height in pixels")
         ->type_name("WIDTHxHEIGHT")
@@ -184,6 +183,7 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
 
 void add_render(CLI::App& program, RenderArguments& a) {
     CLI::App& app = *program.add_subcommand("render", "Render a scene to a picture");
+    app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
     app.add_option("-o,--output", a.output, "picture to write: .png (tone-mapped sRGB), .exr or .hdr (linear radiance)")
         ->required()
         ->type_name("FILE");
@@ -205,6 +205,7 @@ void add_render(CLI::App& program, RenderArguments& a) {
 CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
     CLI::App& app =
         *program.add_subcommand("compare", "Render a scene with several tracers and report how they differ");
+    app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
     app.add_option("-o,--output", a.output, "report to write: one HTML file that needs nothing else")
         ->required()
         ->type_name("FILE.html");
@@ -230,6 +231,11 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
         ->allow_extra_args(false);
     app.add_option("--json", a.json, "also write metrics and stats as JSON")->type_name("FILE")->group(group);
     app.add_option("--strip", a.strip, "also write all pictures side by side")->type_name("FILE.png")->group(group);
+    app.add_option(
+           "--worst", a.worst,
+           "also write what surrounds each picture's worst pixel, magnified: the picture, the reference, the error")
+        ->type_name("FILE.png")
+        ->group(group);
     app.footer(
         "Pictures are compared with the one of --tracer reference, or with the last one where there is none.\n\n"
         "Examples:\n"
@@ -268,7 +274,8 @@ void add_trace(CLI::App& program, TraceArguments& a) {
 }
 
 std::vector<std::string> given_options(const CLI::App& app) {
-    static const std::vector<std::string> own = {"--output", "--tracers", "--hit", "--picture", "--json", "--strip"};
+    static const std::vector<std::string> own = {"--output", "--tracers", "--hit",  "--picture",
+                                                 "--json",   "--strip",   "--worst"};
     std::vector<std::string> words;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_name();

@@ -56,7 +56,7 @@ struct RenderArguments : PictureArguments {
 };
 
 struct CompareArguments : PictureArguments {
-    std::filesystem::path output, json, strip;
+    std::filesystem::path output, json, strip, worst;
     std::vector<std::string> tracers = {"cubemap", "ldc", "reference"}, hits = {"auto"};
     std::vector<std::filesystem::path> pictures;
     std::vector<std::string> given;  ///< the picture's options as they were typed

@@ -135,6 +135,7 @@ Difference compare(const Image8& reference, const Image8& test) {
 
 Difference compare(const Image8& reference, const Image8& test, const Image& reference_radiance,
                    const Image& test_radiance) {
+    check_same_size(reference, test);
     check_same_size(reference_radiance, test_radiance);
     check_same_size(reference, reference_radiance);
     Difference difference = compare(reference, test);

@@ -129,10 +129,12 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
         const uint32_t left = tile % tiles.columns * tile_size, top = tile / tiles.columns * tile_size;
-        for (uint32_t y = top; y < std::min(top + tile_size, picture.height); y++)
+        // Reports come by the row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
+        for (uint32_t row = 0; row < std::min(tile_size, picture.height - top) && !tiles.stop; row++) {
             for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
-                pixel(picture, context, view, x, y, rays);
-        if (progress) progress(double(tile) / tiles.count());
+                pixel(picture, context, view, x, top + row, rays);
+            if (progress) progress((tile + row / double(tile_size)) / tiles.count());
+        }
     }
     return rays;
 }

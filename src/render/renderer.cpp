@@ -150,9 +150,9 @@ void Renderer::Impl::prepare_frame() {
         frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) |
                         (settings.refraction ? EFFECT_REFRACTION : 0u) | (settings.shadow ? EFFECT_SHADOW : 0u) |
                         (settings.ambient ? EFFECT_AMBIENT : 0u);
-    // Planar hits know a surface to about a voxel: a ray counts from beyond the reach of its own surface's samples, which
-    // accept hits up to 0.7 voxels beside them. Measured against the reference (docs/accuracy.md): 1.0 and 1.5 lose contact
-    // shadows and nothing is gained.
+    // Planar hits know a surface to about a voxel: a ray counts from beyond the reach of its own surface's samples,
+    // which accept hits up to 0.7 voxels beside them. Measured against the reference (docs/accuracy.md): 1.0 and 1.5
+    // lose contact shadows and nothing is gained.
     frame.surface_offset = settings.tracer == Tracer::ldc && hit == HitTest::planar ? 0.7f * cube.grid.voxel : 0;
     frame.spp = cubemap ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.last_level = last_level;

@@ -24,7 +24,7 @@ class Usage : public ProgramTest {
 };
 
 TEST_F(Usage, CommandMissingOrUnknown) {
-    expect_refused(run({}), 2, "name a command: render, trace, info or devices");
+    expect_refused(run({}), 2, "name a command: render, compare, trace, info or devices");
     expect_refused(run({"rendr", "x"}), 2, "unknown command 'rendr'");
     expect_refused(run({"--colour"}), 2, "unknown option '--colour'");
 }
@@ -33,6 +33,8 @@ TEST_F(Usage, ArgumentsMissing) {
     expect_refused(run({"render"}), 2, "SCENE is required");
     expect_refused(run({"render", "builtin:glass"}), 2, "--output is required");
     expect_refused(run({"render", "-o", out("a.png")}), 2, "SCENE is required");
+    expect_refused(run({"compare"}), 2, "SCENE is required");
+    expect_refused(run({"compare", "builtin:glass"}), 2, "--output is required");
     expect_refused(run({"trace", "builtin:glass", "--out", out("a.npy")}), 2, "--rays is required");
     expect_refused(run({"trace", "builtin:glass", "--rays", in("r.npy")}), 2, "--out is required");
     expect_refused(run({"info"}), 2, "SCENE is required");
@@ -125,7 +127,6 @@ TEST_F(Usage, NotBuiltYet) {
     expect_each(1, {{{"--builder", "peel"}, "not built into this version: use --builder compute"},
                     {{"--builder", "abuffer"}, "not built into this version"},
                     {{"--tracer", "khr"}, "not built into this version: use --tracer ldc"},
-                    {{"--tracer", "reference"}, "not built into this version"},
                     {{"--hit", "tolerance"}, "not built into this version"},
                     {{"--traversal", "mipmap"}, "not built into this version"},
                     {{"--traversal", "two-level"}, "not built into this version"},
@@ -133,8 +134,6 @@ TEST_F(Usage, NotBuiltYet) {
                     {{"--frames", "0:9", "--fps", "30"}, "not built into this version"}});
     expect_refused(run({"bench", "--scenes", "all"}), 1, "'bench' is not built into this version");
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
-    expect_refused(run({"compare", in("cube.obj"), "-o", out("r.html")}), 1,
-                   "'compare' is not built into this version");
 }
 
 TEST_F(Usage, CubeMapsTraceNoRays) {
@@ -158,7 +157,8 @@ TEST_F(Usage, HelpMentionsEveryOption) {
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},
-        {{"compare", "--help"}, {}},
+        {{"compare", "--help"},
+         {"SCENE", "-o,", "--tracers", "--hit", "--picture", "--json", "--strip", "--worst", "--size", "--env"}},
         {{"bench", "--help"}, {}},
         {{"view", "--help"}, {}}};
     for (int i : {1, 2}) pages[size_t(i)].second.insert(pages[size_t(i)].second.end(), tracing.begin(), tracing.end());
