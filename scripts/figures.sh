@@ -117,6 +117,14 @@ figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
 
+# README.md and docs/accuracy.md: the paper's comparison, and the worst pixels.
+"$program" compare builtin:teapots -o "$work/report.html" --size 480x384 --tracers cubemap,ldc,reference --strip docs/comparison.png
+for scene in teapots tree; do
+    "$program" compare "builtin:$scene" -o "$work/report.html" --tracers ldc,reference --hit exact,planar --ldc 1024 \
+        --worst "docs/worst_$scene.png"
+done
+shrink docs/comparison.png docs/worst_*.png
+
 if [ "${2:-}" = readme ]; then
     effects=reflection,refraction,shadow,ambient
     "$program" render builtin:glass -o docs/glass.png --size 960x600 --exposure 0.1 --spp 256 --bounces 10 --effects $effects

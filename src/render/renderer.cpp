@@ -288,6 +288,7 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
                 commands.submit();
                 if (queues.finish()) break;
                 // The counters told how much room is needed; the picture was left alone.
+                if (progress) progress((sample + double(row) / settings.height) / settings.spp);
             }
             count_times();  // of the turn that fitted: its rays are counted, too
             rays.reflection += queues.count(QUEUE_REFLECTION);

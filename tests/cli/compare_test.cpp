@@ -150,7 +150,7 @@ TEST_F(CompareCommand, AnInterruptLeavesNothing) {
           Words{"render", "builtin:glass", "-o", out("r.png"), "--tracer", "ldc"}}) {
         SCOPED_TRACE(testing::PrintToString(work));
         Words arguments = work;
-        arguments.insert(arguments.end(), {"--spp", "4096"});
+        arguments.insert(arguments.end(), {"--spp", "4096", "--size", "320x256"});
         // `timeout` sends the signal after a second, as a user's Ctrl-C would.
         std::string line = "XDG_CACHE_HOME='" PEELRAY_CACHE "' timeout --signal=INT 1.5 '" PEELRAY_PROGRAM "'";
         for (const std::string& word : arguments) line += " '" + word + "'";

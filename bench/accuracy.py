@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Compares the method and its baseline with the reference on many scenes and prints the tables of docs/accuracy.md.
+
+    bench/accuracy.py --program build/release/peelray --models ../shared/models --out accuracy.json --pictures FOLDER
+
+Each row is `peelray compare` with the options shown, at 1280x1024 and one sample per pixel. Scenes whose file is missing are left
+out, with a line that says so; so are resolutions that the device cannot bind.
+"""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+MIRROR = ["--material", "mirror", "--floor"]
+SCENES = [  # name, file or built-in, options
+    ("teapots", "builtin:teapots", []),
+    ("glass", "builtin:glass", []),
+    ("tree", "builtin:tree", []),
+    ("blob 100K", "builtin:blob:100000", []),
+    ("bunny, mirror", "meshes/bunny_7k.off", MIRROR),
+    ("car", "meshes/car2.glb", ["--floor"]),
+    ("dragon, mirror", "meshes/chinesedragon.gltf", MIRROR),
+    ("dragon, as it is", "meshes/chinesedragon.gltf", []),
+    ("igea, mirror", "meshes/igea.ply", MIRROR),
+    ("nefertiti, mirror", "meshes/nefertiti.obj", MIRROR),
+    ("nefertiti, glass", "meshes/nefertiti.obj", ["--material", "glass", "--floor"]),
+    ("TransmissionTest", "gltf/TransmissionTest.glb", []),
+    ("ToyCar", "gltf/ToyCar/ToyCar.gltf", []),
+]
+EXACT_BARS = {"flip": 0.002, "share_different": 0.001}
+PLANAR_BAR = 0.02
+STAGES = [  # what the pixels off come from: each row adds to the one before
+    ("camera rays", ["--effects", "none"]),
+    ("+ shadows", ["--effects", "shadow"]),
+    ("+ first bounce", ["--bounces", "1"]),
+    ("+ second bounce", ["--bounces", "2"]),
+    ("+ four bounces", []),
+]
+
+
+def find(models, scene):
+    if scene.startswith("builtin:"):
+        return scene
+    path = os.path.join(models, scene)
+    if not os.path.exists(path):  # the sample assets keep variants in folders
+        folder, name = os.path.split(path)
+        for root, _, files in sorted(os.walk(folder)):
+            if name in files:
+                return os.path.join(root, name)
+    return path if os.path.exists(path) else None
+
+
+def compare(program, words, worst=None):
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, "compare", words[0], "-o", os.path.join(folder, "r.html"), "--json", os.path.join(folder, "r.json")]
+        if worst:
+            command += ["--worst", worst]
+        done = subprocess.run(command + words[1:], capture_output=True, text=True)
+        if done.returncode != 0:
+            return None, done.stderr.strip().splitlines()[-1]
+        with open(os.path.join(folder, "r.json")) as file:
+            return json.load(file), None
+
+
+def row(name, triangles, label, d, mark):
+    return (f"| {name} | {triangles:,} | {label} | {d['flip']:.5f}{mark} | {d['hdr_flip']:.5f} | {d['ssim']:.5f} | "
+            f"{d['psnr_db'] or float('inf'):.1f} | {100 * d['share_different']:.4f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default="build/release/peelray")
+    parser.add_argument("--models", default="../shared/models")
+    parser.add_argument("--sizes", default="256,512,1024,2048", help="resolutions of the cube")
+    parser.add_argument("--only", default="", help="scenes whose name holds this")
+    parser.add_argument("--stages", default="dragon, mirror;nefertiti, glass;teapots", help="scenes to take apart")
+    parser.add_argument("--pictures", help="folder for pictures of the worst pixels")
+    parser.add_argument("--out", default="accuracy.json")
+    a = parser.parse_args()
+    results = []
+    print("| scene | triangles | picture | FLIP | HDR-FLIP | SSIM | PSNR dB | pixels off % |\n|---|---:|---|---:|---:|---:|---:|---:|")
+    for name, scene, options in SCENES:
+        path = find(a.models, scene)
+        if a.only not in name or path is None:
+            if path is None:
+                print(f"{name}: {scene} is not here, left out", file=sys.stderr)
+            continue
+        for index, size in enumerate(a.sizes.split(",")):
+            tracers = "cubemap,ldc,reference" if index == 0 else "ldc,reference"
+            worst = os.path.join(a.pictures, f"{name.replace(', ', '-').replace(' ', '-')}-{size}.png") if a.pictures else None
+            words = [path] + options + ["--tracers", tracers, "--hit", "exact,planar", "--ldc", size]
+            result, error = compare(a.program, words, worst)
+            if result is None:
+                print(f"{name} at {size}: {error}", file=sys.stderr)
+                continue
+            results.append({"name": name, "ldc": int(size), "options": options, "result": result})
+            for picture in result["pictures"]:
+                d = picture.get("difference")
+                if not d:
+                    continue
+                label = picture["name"] if picture["name"] == "cubemap" else f"{picture['name'][4:]} {size}"
+                missed = (picture["name"] == "ldc exact" and any(d[key] > bar for key, bar in EXACT_BARS.items())) or (
+                    picture["name"] == "ldc planar" and int(size) >= 1024 and d["flip"] > PLANAR_BAR)
+                print(row(name, result["triangles"], label, d, " (missed)" if missed else ""), flush=True)
+    print("\n| scene | " + " | ".join(stage for stage, _ in STAGES) + " |\n|---|" + "---:|" * len(STAGES))
+    for wanted in a.stages.split(";"):
+        for name, scene, options in SCENES:
+            path = find(a.models, scene)
+            if name != wanted or path is None:
+                continue
+            counts = []
+            for _, extra in STAGES:
+                words = [path] + options + extra + ["--tracers", "ldc,reference", "--hit", "exact", "--ldc", "512"]
+                result, error = compare(a.program, words)
+                share = result["pictures"][0]["difference"]["share_different"] if result else None
+                counts.append("-" if share is None else f"{share * 1280 * 1024:.0f}")
+            results.append({"name": name, "stages": counts})
+            print(f"| {name} | " + " | ".join(counts) + " |", flush=True)
+    with open(a.out, "w") as file:
+        json.dump(results, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()
