@@ -1,4 +1,4 @@
-// agreement: random rays against the double-precision oracle (DESIGN.md section 9.3).
+// agreement: random rays against the double-precision oracle (docs/accuracy.md).
 //
 //     agreement builtin:teapots bunny.off --rays 10000000 --hit exact,planar --ldc 256 --out agreement.json
 //

@@ -63,7 +63,7 @@ void main() {
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material tells, and
         // blurred less the less it bends (the glTF Sample Viewer's rule).
         vec3 through = refraction.weight;
-        if ((m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
+        if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
         radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
     }
     nodes[i] = PathNode(radiance, NO_CHILD, vec3(0), NO_CHILD, vec3(0));

@@ -12,7 +12,7 @@
 const float LDC_SLACK = 1e-3;
 // Large bounding boxes go to the tile queue: more pixels than this would keep one thread busy while its neighbours wait.
 const uint LDC_SMALL_PIXELS = 48;
-// The overlap band (DESIGN.md section 3): a triangle also goes into a second LDI if its normal's component there is at least
+// The overlap band: a triangle also goes into a second LDI if its normal's component there is at least
 // this share of the largest. Without it 2-4 % of planar hits leak, with it 0.1-0.3 %.
 const float LDC_OVERLAP = 0.8;
 // Lists longer than this are sorted by a workgroup of their own.

@@ -114,6 +114,7 @@ vec2 randomPair(uint seed, uint index, uint purpose) {
 
 /// Tone curves; input exposed, linear; output linear in [0, 1].
 vec3 tonemapAces(vec3 c) {  // Narkowicz: ACES filmic tone mapping curve, 2015
+    c = min(c, vec3(1e6));  // white long before; squares would overflow
     return clamp((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14), vec3(0), vec3(1));
 }
 vec3 tonemapNeutral(vec3 c) {  // Khronos PBR neutral tone mapper, 2024

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
 
 /// One column of the comparison.
 struct Entry {
@@ -71,8 +72,18 @@ std::string compare_command(const CompareArguments& a) {
     return joined(words);
 }
 
+void check_tracing(const CompareArguments& a, const std::string& tracer, const std::string& hit) {
+    TracingArguments tracing = a.tracing;
+    tracing.tracer = tracer;
+    tracing.hit = hit;
+    tracing.check();
+}
+
 std::vector<Entry> plan(const CompareArguments& a) {
     std::vector<Entry> entries;
+    for (const std::string& hit : a.hits) check_tracing(a, "ldc", hit);
+    const bool uses_hits = std::find(a.tracers.begin(), a.tracers.end(), "ldc") != a.tracers.end();
+    if (!uses_hits && a.hits != Words{"auto"}) print_note("--hit has no effect without ldc among the --tracers");
     for (const std::string& tracer : a.tracers) {
         if (tracer != "ldc") {
             entries.push_back({tracer, tracer, "auto", {}, render_command(a, tracer, tracer, "")});
@@ -83,22 +94,17 @@ std::vector<Entry> plan(const CompareArguments& a) {
             entries.push_back({name, tracer, hit, {}, render_command(a, name, tracer, hit)});
         }
     }
-    for (const Entry& entry : entries) {
-        TracingArguments tracing = a.tracing;
-        tracing.tracer = entry.tracer;
-        tracing.hit = entry.hit;
-        tracing.check();
-    }
+    for (const Entry& entry : entries) check_tracing(a, entry.tracer, entry.hit);
     return entries;
 }
 
 bool is_linear(const fs::path& path) {
-    return path.extension() == ".exr" || path.extension() == ".hdr";
+    return lower_extension(path) == ".exr" || lower_extension(path) == ".hdr";
 }
 
 /// A picture that another program made.
 Entry read_picture(const CompareArguments& a, const fs::path& path) {
-    Entry entry{path.filename().string(), "", "", path, fmt::format("--picture {}", path.string())};
+    Entry entry{path.filename().string(), "", "", path, fmt::format("(given as --picture {})", quoted(path.string()))};
     if (is_linear(path)) {
         entry.radiance = read_hdr(path);
         const RenderSettings settings = settings_of(a);
@@ -142,14 +148,15 @@ std::string ms(const Json& value) {
     return value.is_number() ? fmt::format("{:.2f} ms", value.get<double>()) : "not measured";
 }
 
-std::vector<ReportFact> facts_of(const Entry& entry) {
+/// `warm`: times are medians after a frame that warmed up.
+std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     const Json& s = entry.stats;
     std::vector<ReportFact> facts;
     if (s.contains("device"))
         facts.emplace_back("device", s["device"].get<std::string>() + ", " + s["driver"].get<std::string>());
     if (s.contains("frame_ms")) {
         const bool cpu = entry.tracer == "reference";
-        facts.emplace_back(cpu ? "rays and shading" : "frame", ms(s["frame_ms"]));
+        facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s["frame_ms"]));
         if (s.value("build_ms", 0.0) > 0)
             facts.emplace_back(cpu ? "hierarchy" : "of which the cube", ms(s["build_ms"]));
     }
@@ -269,7 +276,7 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
         report.notes.push_back(
             fmt::format("without --tracers reference the pictures are compared with '{}'", reference.name));
     for (const Entry& entry : entries) {
-        ReportPicture picture{entry.name, entry.command, entry.encoded, facts_of(entry), {}};
+        ReportPicture picture{entry.name, entry.command, entry.encoded, facts_of(entry, a.repeat > 1), {}};
         if (&entry != &reference) picture.difference = difference(reference, entry);
         report.pictures.push_back(std::move(picture));
     }
@@ -277,23 +284,29 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
 }
 
 void print(const CompareArguments& a, const Report& report) {
-    fmt::print("{}: {} pictures, compared with '{}'\n", a.output.string(), report.pictures.size(),
-               report.pictures[report.reference].name);
-    for (const ReportPicture& picture : report.pictures)
-        if (const auto& d = picture.difference)
-            fmt::print("  {:<14} FLIP {:.5f}  HDR-FLIP {:.5f}  SSIM {:.5f}  PSNR {:6.2f} dB  pixels off {:.4f} %\n",
-                       picture.name, d->flip, d->hdr_flip, d->ssim, d->psnr, d->different * 100);
+    const size_t count = report.pictures.size();
+    fmt::print("{}: {} picture{}", a.output.string(), count, count == 1 ? "" : "s");
+    if (count > 1) fmt::print(", compared with '{}'", one_line(report.pictures[report.reference].name));
+    fmt::print("\n");
+    for (const ReportPicture& picture : report.pictures) {
+        const auto& d = picture.difference;
+        if (!d) continue;
+        const std::string hdr = std::isnan(d->hdr_flip) ? "     --" : fmt::format("{:.5f}", d->hdr_flip);
+        const std::string decibels = std::isinf(d->psnr) ? "equal    " : fmt::format("{:6.2f} dB", d->psnr);
+        fmt::print("  {:<14} FLIP {:.5f}  HDR-FLIP {}  SSIM {:.5f}  PSNR {}  pixels off {:.4f} %\n",
+                   one_line(picture.name), d->flip, hdr, d->ssim, decibels, d->different * 100);
+    }
 }
 
 }  // namespace
 
 void run_compare(const CompareArguments& a) {
     check_ranges(a);
-    const std::string extension = a.output.extension().string();
+    const std::string extension = lower_extension(a.output);
     if (extension != ".html" && extension != ".htm")
         fail("the report is an HTML file: name '{}' .html", a.output.string());
     for (const fs::path& path : {a.strip, a.worst})
-        if (!path.empty() && path.extension() != ".png") fail("{} would be a PNG: name it .png", path.string());
+        if (!path.empty() && lower_extension(path) != ".png") fail("{} would be a PNG: name it .png", path.string());
     std::vector<Entry> entries = plan(a);
     if (!a.worst.empty() && entries.size() + a.pictures.size() < 2)
         fail("{} needs two pictures to compare: name more --tracers or a --picture", a.worst.string());
@@ -303,7 +316,12 @@ void run_compare(const CompareArguments& a) {
     inputs.insert(inputs.end(), a.pictures.begin(), a.pictures.end());
     check_outputs(outputs, inputs);
     std::vector<Entry> given;
-    for (const fs::path& path : a.pictures) given.push_back(read_picture(a, path));
+    for (const fs::path& path : a.pictures) {
+        given.push_back(read_picture(a, path));
+        const auto same = std::count_if(given.begin(), given.end(),
+                                        [&](const Entry& other) { return other.file.filename() == path.filename(); });
+        if (same > 1) given.back().name += fmt::format(" ({})", same);
+    }
 
     const PreparedScene scene = prepare_scene(a);
     watch_interrupts();
@@ -313,10 +331,11 @@ void run_compare(const CompareArguments& a) {
     const Report report = report_of(a, entries, scene);
     check_interrupt();
     for (const std::string& text : report.notes) print_note(text);
-    write_report(a.output, report);
+    // The report comes last: where it is, everything is.
     if (!a.json.empty()) write_json(a.json, json_of(a, report, entries, scene));
     if (!a.strip.empty()) write_png(a.strip, strip_of(entries));
     if (!a.worst.empty()) write_png(a.worst, worst_of(report));
+    write_report(a.output, report);
     print(a, report);
 }
 

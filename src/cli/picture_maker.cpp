@@ -25,12 +25,12 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
 }
 
 MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
-    if (!device_) {
-        device_ = std::make_unique<Device>(DeviceOptions{arguments_.device, arguments_.validate});
-        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene, scene_.geometry, scene_.environment);
-    }
+    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{arguments_.device, arguments_.validate});
+    // Each picture has a renderer of its own: what one needed must not count as another's memory.
+    device_->reset_peak();
+    Renderer renderer(*device_, scene_.scene, scene_.geometry, scene_.environment);
     Progress progress("rendering", 1);
-    RenderResult result = renderer_->render(settings, [&](double share) {
+    RenderResult result = renderer.render(settings, [&](double share) {
         check_interrupt();
         progress.update(share);
     });

@@ -16,7 +16,7 @@ struct MadePicture {
     std::string summary;           ///< cube and times, for a reader of the terminal; may be empty
 };
 
-/// Opens the device when a tracer first needs one and keeps it and the scene's buffers from picture to picture.
+/// Opens the device when a tracer first needs one and keeps it from picture to picture.
 class PictureMaker {
   public:
     /// Both must outlive it.
@@ -33,7 +33,6 @@ class PictureMaker {
     const PreparedScene& scene_;
     const DeviceArguments& arguments_;
     std::unique_ptr<Device> device_;
-    std::unique_ptr<Renderer> renderer_;
 };
 
 }  // namespace peelray

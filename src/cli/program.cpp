@@ -15,13 +15,6 @@
 namespace peelray {
 namespace {
 
-/// Whatever a file's names brought along: one line, no terminal codes.
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-    return text;
-}
-
 /// What is wrong with the command line.
 std::string describe(const CLI::ParseError& error, const CLI::App& program) {
     const auto chosen = program.get_subcommands();
@@ -59,6 +52,19 @@ void TracingArguments::check() const {
         fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
     if (block.x < 1 || block.y < 1 || block.x > 64 || block.y > 64)
         fail("a block of {}x{} pixels is out of range: choose 1 to 64 a side (--block)", block.x, block.y);
+}
+
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
+    return text;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    return extension;
 }
 
 void print_note(const std::string& text) {

@@ -1,4 +1,4 @@
-// The command line (DESIGN.md section 7): parsing, the subcommands, exit status.
+// The command line: parsing, the subcommands, exit status.
 #pragma once
 
 #include <filesystem>
@@ -79,6 +79,10 @@ void run_devices();
 
 /// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit.
 Geometry visible_geometry(const Scene& scene);
+/// Whatever a file's names brought along, as one line without terminal codes.
+std::string one_line(std::string text);
+/// A file's extension with its dot, in lower case.
+std::string lower_extension(const std::filesystem::path& path);
 /// A line on standard error that is no complaint.
 void print_note(const std::string& text);
 /// Throws Error unless `repeat` is a sensible number of measurements.

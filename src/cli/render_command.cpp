@@ -18,9 +18,7 @@ namespace fs = std::filesystem;
 enum class Format { png, exr, hdr };
 
 Format format_of(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+    const std::string extension = lower_extension(path);
     if (extension == ".png") return Format::png;
     if (extension == ".exr") return Format::exr;
     if (extension == ".hdr") return Format::hdr;

@@ -100,7 +100,7 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
 void write_json(const std::filesystem::path& path, const Json& json) {
     write_atomically(path, [&](const std::filesystem::path& temporary) {
         std::ofstream stream(temporary);
-        stream << json.dump(2) << "\n";
+        stream << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
         stream.close();
         if (!stream) fail("cannot write '{}': is the disk full?", path.string());
     });

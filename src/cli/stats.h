@@ -1,4 +1,4 @@
-// The stats file (DESIGN.md section 7).
+// The stats file.
 #pragma once
 
 #include <filesystem>

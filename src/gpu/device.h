@@ -64,6 +64,8 @@ class Device {
     /// Device memory held by buffers and images now, and the most so far, in bytes.
     uint64_t allocated() const { return allocated_; }
     uint64_t peak_allocated() const { return peak_allocated_; }
+    /// Counts the peak anew from what is allocated now.
+    void reset_peak() { peak_allocated_ = allocated_; }
 
     // For the classes of this folder.
     VkDevice handle = VK_NULL_HANDLE;

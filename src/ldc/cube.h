@@ -1,4 +1,4 @@
-// The layered depth cube on the GPU, in the by-voxel order (DESIGN.md section 3; docs/data.md draws the structure).
+// The layered depth cube on the GPU, in the by-voxel order (docs/data.md draws the structure).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The oracle: what a ray hits, in double precision, on the CPU (DESIGN.md section 9.3).
+// The oracle: what a ray hits, in double precision, on the CPU.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class Oracle {
     /// `skip`: a triangle that does not count (~0u: none).
     OracleHit closest(const OracleRay& ray, uint32_t skip = ~0u) const;
 
-    /// Is `t` (+inf: a miss), `triangle` a right answer for `ray`? See DESIGN.md section 9.3: right when the ray
+    /// Is `t` (+inf: a miss), `triangle` a right answer for `ray`? Right when the ray
     /// itself, or one within 2·10⁻⁶ of the scene's diagonal (parallel offset), has a nearest hit whose distance across
     /// the surface
     /// (|Δt|·|d|·cosine to the normal) is ≤ 10⁻⁵ of the diagonal; misses must agree likewise.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "base/error.h"
@@ -159,24 +161,41 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     Tiles tiles(settings);
     std::mutex mutex;
     std::exception_ptr failure;
-    const auto share = [&](const std::function<void(double)>& report) {
+    const auto guarded = [&](const auto& body) {
         try {
-            const RayCounts rays = impl_->work(picture, context, view, tiles, report);
-            const std::lock_guard lock(mutex);
-            picture.rays.reflection += rays.reflection;
-            picture.rays.refraction += rays.refraction;
-            picture.rays.shadow += rays.shadow;
-            picture.rays.ambient += rays.ambient;
+            body();
         } catch (...) {
             tiles.stop = true;
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
         }
     };
+    const auto share = [&](const std::function<void(double)>& report) {
+        const RayCounts rays = impl_->work(picture, context, view, tiles, report);
+        const std::lock_guard lock(mutex);
+        picture.rays.reflection += rays.reflection;
+        picture.rays.refraction += rays.refraction;
+        picture.rays.shadow += rays.shadow;
+        picture.rays.ambient += rays.ambient;
+    };
     std::vector<std::thread> others;
+    std::atomic<unsigned> done{0};
     const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 1; i < cores; i++) others.emplace_back(share, nullptr);
-    share(progress);
+    try {
+        for (unsigned i = 1; i < cores; i++)
+            others.emplace_back([&] {
+                guarded([&] { share(nullptr); });
+                done++;
+            });
+    } catch (const std::system_error&) {
+        // No more threads to be had: those there are do the work.
+    }
+    guarded([&] { share(progress); });
+    // The others' last tiles may take long: whoever listens for interrupts goes on listening.
+    while (progress && !tiles.stop && done < others.size()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        guarded([&] { progress(1); });
+    }
     for (std::thread& other : others) other.join();
     if (failure) std::rethrow_exception(failure);
     return picture;

@@ -1,4 +1,4 @@
-// Ground truth: the frame of docs/frame.md on the CPU, in double precision (DESIGN.md section 4, `--tracer reference`).
+// Ground truth: the frame of docs/frame.md on the CPU, in double precision (`--tracer reference`).
 #pragma once
 
 #include <functional>

@@ -62,8 +62,7 @@ Optics::Optics(const Material& m)
 }
 
 glm::dvec3 Surface::start(const glm::dvec3& point, const glm::dvec3& direction) const {
-    const double distance = 1e-12 * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
-    return point + geometric * (glm::dot(direction, geometric) >= 0 ? distance : -distance);
+    return point + geometric * (glm::dot(direction, geometric) >= 0 ? error : -error);
 }
 
 Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry) {
@@ -83,6 +82,10 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     };
     Surface s;
     s.position = interpolate(p);
+    s.error = 0;
+    for (const glm::dvec3& corner :
+         p)  // some thousand times the rounding of a sum of three, which counts in the corners
+        s.error = std::max(s.error, 1e-12 * std::max({std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)}));
     s.material = geometry_.materials[triangle];
     const glm::dvec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double size = glm::length(area);
@@ -132,7 +135,7 @@ glm::dvec3 Surroundings::radiance(const glm::dvec3& d, double blur) const {
                         std::acos(std::clamp(d.y, -1.0, 1.0)) / optics::pi);
     const double exact = blur * (environment_.levels - 1);
     const auto lower = uint32_t(exact), upper = std::min(lower + 1, environment_.levels - 1);
-    return glm::mix(level(uv, lower), level(uv, upper), exact - lower);
+    return exact > lower ? glm::mix(level(uv, lower), level(uv, upper), exact - lower) : level(uv, lower);
 }
 
 glm::dvec3 Surroundings::seen(const glm::dvec3& d, bool sees_sun) const {

@@ -27,11 +27,12 @@ struct Surface {
     glm::dvec3 normal;        ///< interpolated, unit, on the ray's side
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
     glm::dvec3 base_color;
-    bool front;  ///< the ray comes from the side that the normals point to
+    double error;  ///< bound on the position's rounding error, world units
+    bool front;    ///< the ray comes from the side that the normals point to
     uint32_t material;
 
-    /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by a millionth of what the GPU
-    /// needs.
+    /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
+    /// a triangle that coincides with the surface's own is not hit either.
     glm::dvec3 start(const glm::dvec3& point, const glm::dvec3& direction) const;
 };
 

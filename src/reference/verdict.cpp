@@ -1,4 +1,4 @@
-// Is an answer right? DESIGN.md section 9.3: it is when the ray, or one beside it, has it in double precision.
+// Is an answer right? It is when the ray, or one beside it, has it in double precision.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

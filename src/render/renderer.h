@@ -1,4 +1,4 @@
-// One picture of a scene: the frame of DESIGN.md section 4 (docs/frame.md tells it pass by pass).
+// One picture of a scene: docs/frame.md tells it pass by pass.
 #pragma once
 
 #include <functional>

@@ -106,9 +106,40 @@ TEST_F(CompareCommand, PicturesOfOtherPrograms) {
     EXPECT_EQ(j["pictures"][0]["name"], "a.png");
     EXPECT_EQ(j["pictures"][0]["difference"]["identical"], true);
     EXPECT_TRUE(j["pictures"][0]["difference"]["hdr_flip"].is_null());
+    EXPECT_EQ(run.out.find("nan"), std::string::npos) << run.out;
     // Half floats round: the tone-mapped picture may differ by a step.
     EXPECT_EQ(j["pictures"][1]["difference"]["share_different"], 0);
     EXPECT_LT(j["pictures"][1]["difference"]["hdr_flip"], 0.02);
+}
+
+TEST_F(CompareCommand, OddNames) {
+    put("cube.obj", kCube);
+    std::filesystem::create_directories(folder / "a b");
+    expect_done(render(in("cube.obj"), {}, "p.PNG"), {"p.PNG"});
+    std::filesystem::copy_file(out("p.PNG"), folder / "a b/p.PNG");
+    const std::string odd = in("\xff\xfe'<.obj");
+    std::filesystem::copy_file(in("cube.obj"), odd);
+    const Outcome run = compare(
+        odd, {"--tracers", "none", "--picture", out("p.PNG"), "--picture", in("a b/p.PNG"), "--json", out("r.json")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const nlohmann::json j = json();
+    ASSERT_EQ(j["pictures"].size(), 3u);
+    EXPECT_EQ(j["pictures"][0]["name"], "p.PNG");
+    EXPECT_EQ(j["pictures"][1]["name"], "p.PNG (2)");
+    EXPECT_NE(j["command"].get<std::string>().find("--picture '" + in("a b/p.PNG") + "'"), std::string::npos)
+        << j["command"];
+    EXPECT_EQ(run.out.find("inf"), std::string::npos) << run.out;
+}
+
+TEST_F(CompareCommand, MemoryIsThePicturesOwn) {
+    put("cube.obj", kCube);
+    expect_done(compare(in("cube.obj"), {"--tracers", "ldc", "--json", out("a.json")}), {"a.json", "r.html"});
+    expect_done(compare(in("cube.obj"), {"--tracers", "cubemap,none,ldc", "--json", out("b.json"), "--floor"}),
+                {"a.json", "b.json", "r.html"});
+    expect_done(compare(in("cube.obj"), {"--tracers", "ldc", "--json", out("a.json"), "--floor"}),
+                {"a.json", "b.json", "r.html"});
+    EXPECT_EQ(json("a.json")["pictures"][0]["stats"]["memory_bytes"],
+              json("b.json")["pictures"][2]["stats"]["memory_bytes"]);
 }
 
 TEST_F(CompareCommand, SaysWhenNothingReflects) {
@@ -121,7 +152,6 @@ TEST_F(CompareCommand, SaysWhenNothingReflects) {
 
 TEST_F(CompareCommand, WrongUsageAndBadInput) {
     put("cube.obj", kCube);
-    put("small.png", get(out("none")));
     expect_refused(compare(in("cube.obj"), {"--tracers", "ldc,embree"}), 2,
                    "'ldc,embree' is not a list out of cubemap,ldc");
     expect_refused(compare(in("cube.obj"), {"--tracers", "ldc,ldc"}), 2, "each once");
@@ -133,6 +163,8 @@ TEST_F(CompareCommand, WrongUsageAndBadInput) {
     expect_refused(compare(in("no.obj")), 1, "no.obj");
     expect_refused(compare(in("cube.obj"), {"--picture", in("no.png")}), 1, "no.png");
     expect_refused(compare(in("cube.obj"), {"--strip", out("s.jpg")}), 1, "name it .png");
+    expect_refused(compare(in("cube.obj"), {"--tracers", "none", "--hit", "tolerance"}), 1,
+                   "--hit tolerance is not built");
     expect_refused(compare(in("cube.obj"), {"--tracers", "ldc", "--worst", out("w.png")}), 1, "two pictures");
     expect_refused(compare(in("cube.obj"), {"--json", out("r.html")}), 1, "written twice");
     expect_refused(run({"compare", in("cube.obj"), "-o", out("r.png")}), 1, "name '");
@@ -151,11 +183,12 @@ TEST_F(CompareCommand, AnInterruptLeavesNothing) {
         SCOPED_TRACE(testing::PrintToString(work));
         Words arguments = work;
         arguments.insert(arguments.end(), {"--spp", "4096", "--size", "320x256"});
-        // `timeout` sends the signal after a second, as a user's Ctrl-C would.
-        std::string line = "XDG_CACHE_HOME='" PEELRAY_CACHE "' timeout --signal=INT 1.5 '" PEELRAY_PROGRAM "'";
+        // `timeout` sends the signal after a while, as a user's Ctrl-C would, and ends with the program's own status.
+        std::string line =
+            "XDG_CACHE_HOME='" PEELRAY_CACHE "' timeout --preserve-status --signal=INT 2.5 '" PEELRAY_PROGRAM "'";
         for (const std::string& word : arguments) line += " '" + word + "'";
-        line += " > '" + (folder / "scratch/o").string() + "' 2> '" + (folder / "scratch/e").string() +
-                "'; test $? -eq 124";
+        line +=
+            " > '" + (folder / "scratch/o").string() + "' 2> '" + (folder / "scratch/e").string() + "'; test $? -eq 1";
         EXPECT_EQ(std::system(line.c_str()), 0);
         EXPECT_EQ(get(folder / "scratch/e"), "peelray: interrupted: nothing was written; run it again\n");
         EXPECT_EQ(outputs(), Words());

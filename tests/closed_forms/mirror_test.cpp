@@ -89,6 +89,24 @@ TEST_F(MirrorTest, TintFollowsSchlick) {
         .expect(0, 3000);
 }
 
+TEST_F(MirrorTest, TwinTrianglesDoNotHitEachOther) {
+    // A large triangle with both windings, seen close by near the origin: the position's rounding counts in the
+    // corners.
+    const auto z = [](float x, float y) { return 0.3f * x + 0.7f * y; };
+    const glm::vec3 a(-1013, -997, z(-1013, -997)), b(1021, -1009, z(1021, -1009)), c(3, 1019, z(3, 1019));
+    Stage stage;
+    stage.add(faces({{a, b, c}}), plane_mirror({0.5f, 0.5f, 0.5f}));
+    stage.add(faces({{c, b, a}}), plane_mirror({0.5f, 0.5f, 0.5f}));
+    const Camera camera = perspective({0.03f, 0.03f, 0.5f}, {0, 0, 0}, 2);
+    tally(render(stage, white, settings_for(camera)), camera, 1e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              // Half of the white sky and Schlick's rest; a second bounce between the twins would halve it again.
+              const double cosine = std::abs(glm::dot(ray.direction, glm::normalize(glm::dvec3(-0.3, -0.7, 1))));
+              return glm::dvec3(0.5 + 0.5 * std::pow(1 - cosine, 5));
+          })
+        .expect(0, 64 * 64);
+}
+
 /// Two mirrors at z = ±1 that face each other.
 Stage hall(const glm::vec3& tint) {
     Stage stage;

@@ -1,4 +1,4 @@
-// The traversal against the oracle (DESIGN.md section 9.3) and its defined answers for odd rays.
+// The traversal against the oracle and its defined answers for odd rays.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -280,7 +280,7 @@ TEST_F(TraceTest, BarycentricWeightsGiveTheHitPoint) {
 }
 
 TEST_F(TraceTest, PlanarHitsAreOffByLessThanAVoxel) {
-    // DESIGN.md section 9.3 allows 0.3 % of hits off by more than one voxel at 1024; rays start off the surface.
+    // Allowed are 0.3 % of hits off by more than one voxel at 1024; rays start off the surface.
     const Geometry geometry = flatten(load_scene("builtin:blob:300000"));
     TracedScene scene(device(), geometry, 1024, HitTest::planar);
     const Oracle oracle(geometry);

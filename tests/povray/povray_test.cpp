@@ -117,16 +117,16 @@ TEST_F(PovRayTest, CameraRaysMeetTheSamePoints) {
                 const double share = (theirs[axis] - 0.1) / 0.8;
                 difference = std::max(difference, std::abs(share - (ours[axis] - geometry.lower[axis]) / size[axis]));
             }
-            // 16 bits resolve 2·10⁻⁵ of the box.
-            if (difference > 5e-5)
+            // 16 bits resolve 2·10⁻⁵ of the box, and POV-Ray rounds to the nearest.
+            if (difference > 1.2e-5)
                 off++;
             else
                 worst = std::max(worst, difference);
         }
-        fmt::print("  {}: {} pixels with a surface, {} off (silhouettes), the others by at most {:.1e} of the box\n",
-                   name, surface, off, worst);
+        fmt::print("  {}: {} pixels with a surface, {} off, the others by at most {:.1e} of the box\n", name, surface,
+                   off, worst);
         EXPECT_GT(surface, picture.aovs.position.size() / 3);
-        EXPECT_LE(off, 8u);
+        EXPECT_EQ(off, 0u);
     }
 }
 

@@ -1,4 +1,4 @@
-// What counts as right: DESIGN.md section 9.3.
+// What counts as right (docs/accuracy.md, "Rays").
 #include <gtest/gtest.h>
 
 #include "meshes.h"

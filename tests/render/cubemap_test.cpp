@@ -228,6 +228,20 @@ TEST_F(CubemapTracerTest, TheSamePictureTwice) {
     EXPECT_EQ(first.encoded, again.encoded);
 }
 
+TEST_F(CubemapTracerTest, TintedGlassThatIsOffIsNotTinted) {
+    Stage stage;
+    Material tinted = clear_glass();
+    tinted.attenuation_color = {0.1f, 0.5f, 0.9f};
+    tinted.attenuation_distance = 0.2f;
+    stage.add(sphere({0, 0, 0}, 1, 24), tinted);
+    RenderSettings settings = settings_for(kView, 64);
+    settings.refraction = false;
+    const RenderResult off = cubemap(stage, white, settings);
+    settings.reflection = false;
+    settings.tracer = Tracer::none;
+    tally(off, render(stage, white, settings), 1e-3).expect(0, 64 * 64);
+}
+
 TEST_F(CubemapTracerTest, EffectsThatAreOffSeeTheSky) {
     RenderSettings settings = settings_for(kView, 64);
     settings.reflection = settings.refraction = settings.shadow = false;
