@@ -118,8 +118,12 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
                    "a camera of the scene, see 'peelray info SCENE'; default: the first, or the whole scene in view")
         ->type_name("NAME|N")
         ->group(view);
-    add_number<double>(app, "--time", a.time, "moment of the animation (not built yet: only 0)")
+    add_number<double>(app, "--time", a.time, "moment of the animation; default: everything at rest")
         ->type_name("SECONDS")
+        ->group(view);
+    app.add_option("--animation", a.animation,
+                   "which one, see 'peelray info SCENE', or all at once; default: the first, with --time")
+        ->type_name("NAME|N|all")
         ->group(view);
     app.add_option("--frames", a.frames, "frames of the animation (not built yet)")
         ->type_name("A:B")

@@ -106,8 +106,10 @@ void check_ranges(const PictureArguments& a) {
         if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
             fail("{} must be three finite numbers", option);
     };
-    if (!a.frames.empty() || a.fps || a.time.value_or(0) != 0)
-        fail("animations are not built into this version: leave --time, --frames and --fps out");
+    if (!a.frames.empty() || a.fps)
+        fail("several frames are not built into this version: leave --frames and --fps out, use --time");
+    if (a.time && !(*a.time >= 0 && *a.time <= 1e6))
+        fail("a moment of {} seconds is out of range: choose 0 to 1000000 (--time)", *a.time);
     finite(a.eye, "--eye");
     finite(a.look, "--look");
     finite(a.up, "--up");
@@ -150,6 +152,10 @@ RenderSettings settings_of(const PictureArguments& a) {
 PreparedScene prepare_scene(const PictureArguments& a) {
     PreparedScene scene;
     scene.scene = load_scene(a.scene);
+    if (a.time && a.animation.empty() && scene.scene.animations.empty())
+        print_note("the scene has no animation: --time has no effect");
+    else if (a.time || !a.animation.empty())
+        animate(scene.scene, a.animation.empty() ? "0" : a.animation, a.time.value_or(0));
     scene.geometry = visible_geometry(scene.scene);
     scene.camera = choose_camera(a, scene.scene, scene.geometry, float(a.size.x) / float(a.size.y));
     if (!a.material.empty()) override_material(scene.scene, a.material, scene.geometry);

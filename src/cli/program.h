@@ -44,7 +44,7 @@ struct PictureArguments {
     std::vector<std::string> effects = {"reflection", "refraction", "shadow"};
     float exposure = 0;
     std::optional<double> time, fps;
-    std::string frames;
+    std::string animation, frames;
     uint32_t bounces = 4, spp = 1, repeat = 1;
     TracingArguments tracing;
     DeviceArguments device;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/deform.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -47,16 +48,15 @@ Totals count(const Scene& scene) {
     return totals;
 }
 
-void append_vertices(Geometry& out, const Primitive& primitive, const glm::mat4& world,
-                     const NormalTransform& to_normal, const Node& node, const Totals& totals) {
-    for (size_t i = 0; i < primitive.positions.size(); ++i) {
-        const glm::vec3 p = glm::vec3(world * glm::vec4(primitive.positions[i], 1));
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",
-                 node.name, i);
-        out.positions.push_back(p);
-    }
-    for (const glm::vec3& normal : primitive.normals) out.normals.push_back(to_normal(normal));
+void append_position(Geometry& out, const glm::vec3& p, const Node& node, size_t vertex) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",
+             node.name, vertex);
+    out.positions.push_back(p);
+}
+
+/// Texture coordinates and colours of a primitive whose positions were appended.
+void append_attributes(Geometry& out, const Primitive& primitive, const Totals& totals) {
     if (primitive.uvs.empty())
         out.uvs.resize(out.positions.size(), glm::vec2(0));
     else
@@ -65,6 +65,18 @@ void append_vertices(Geometry& out, const Primitive& primitive, const glm::mat4&
         out.colors.resize(out.positions.size(), glm::vec4(1));
     else
         out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
+}
+
+void append_rigid(Geometry& out, const Primitive& primitive, const glm::mat4& world, const NormalTransform& to_normal,
+                  const Node& node) {
+    for (size_t i = 0; i < primitive.positions.size(); ++i)
+        append_position(out, glm::vec3(world * glm::vec4(primitive.positions[i], 1)), node, i);
+    for (const glm::vec3& normal : primitive.normals) out.normals.push_back(to_normal(normal));
+}
+
+void append_deformed(Geometry& out, const Deformed& deformed, const Node& node) {
+    for (size_t i = 0; i < deformed.positions.size(); ++i) append_position(out, deformed.positions[i], node, i);
+    out.normals.insert(out.normals.end(), deformed.normals.begin(), deformed.normals.end());
 }
 
 void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first, bool mirrors) {
@@ -100,17 +112,26 @@ Geometry flatten(const Scene& scene) {
     out.materials.reserve(totals.triangles);
     out.lower = glm::vec3(INFINITY);
     out.upper = glm::vec3(-INFINITY);
-    std::vector<glm::mat4> worlds;
-    worlds.reserve(scene.nodes.size());
-    for (const Node& node : scene.nodes) {
-        worlds.push_back(node.parent < 0 ? node.local : worlds[static_cast<size_t>(node.parent)] * node.local);
+    const std::vector<glm::mat4> worlds = world_matrices(scene);
+    for (size_t n = 0; n < scene.nodes.size(); ++n) {
+        const Node& node = scene.nodes[n];
         if (node.mesh < 0) continue;
-        const NormalTransform to_normal(worlds.back());
+        const Mesh& mesh = scene.meshes[static_cast<size_t>(node.mesh)];
+        const NormalTransform to_normal(worlds[n]);
         const auto first_triangle = static_cast<uint32_t>(out.triangles.size());
-        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(node.mesh)].primitives) {
+        for (const Primitive& primitive : mesh.primitives) {
             const auto first = static_cast<uint32_t>(out.positions.size());
-            append_vertices(out, primitive, worlds.back(), to_normal, node, totals);
-            append_triangles(out, primitive, first, to_normal.mirrors);
+            bool mirrors = to_normal.mirrors;
+            if (is_rigid(primitive, node)) {
+                append_rigid(out, primitive, worlds[n], to_normal, node);
+            } else {
+                const std::vector<float>& weights = node.weights.empty() ? mesh.weights : node.weights;
+                const Deformed deformed = deform(scene, node, primitive, weights, worlds, worlds[n]);
+                append_deformed(out, deformed, node);
+                mirrors = deformed.mirrors;
+            }
+            append_attributes(out, primitive, totals);
+            append_triangles(out, primitive, first, mirrors);
         }
         const auto count = static_cast<uint32_t>(out.triangles.size()) - first_triangle;
         if (count > 0) out.objects.push_back({first_triangle, count});

@@ -1,7 +1,6 @@
 #include "scene/gltf.h"
 
 #include <algorithm>
-#include <set>
 
 #include "scene/gltf_check.h"
 
@@ -16,18 +15,6 @@ void GltfLoader::read_extensions() {
     std::sort(scene.extensions_unsupported.begin(), scene.extensions_unsupported.end());
 }
 
-void GltfLoader::read_animations() {
-    for (const tinygltf::Animation& from : file.model().animations) {
-        Animation animation{from.name, 0};
-        std::set<int> inputs;  // the channels of an animation mostly share one
-        for (const tinygltf::AnimationSampler& sampler : from.samplers)
-            if (inputs.insert(sampler.input).second)
-                for (const float time : file.floats(sampler.input))
-                    animation.duration = std::max(animation.duration, time);
-        scene.animations.push_back(std::move(animation));
-    }
-}
-
 void GltfLoader::write_notes() {
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
 }
@@ -38,6 +25,7 @@ Scene load_gltf(const std::filesystem::path& path) {
     loader.read_extensions();
     loader.read_materials();
     loader.read_nodes();
+    loader.read_skins();
     loader.read_animations();
     loader.write_notes();
     return std::move(loader.scene);

@@ -34,7 +34,8 @@ struct GltfLoader {
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 
     void read_extensions();          // gltf.cpp
-    void read_animations();          // gltf.cpp
+    void read_skins();               // gltf_animation.cpp
+    void read_animations();          // gltf_animation.cpp
     void write_notes();              // gltf.cpp
     void read_materials();           // gltf_material.cpp; adds the default material at the end
     void read_mesh(uint32_t index);  // gltf_mesh.cpp

@@ -63,6 +63,7 @@ Member texts(const char* key) {
 Member number(const char* key) {
     return {key, Kind::number};
 }
+/// `length` 0: any number of them.
 Member numbers(const char* key, size_t length) {
     return {key, Kind::numbers, {}, "", length};
 }
@@ -147,12 +148,12 @@ Members file_members(size_t view_without_bytes) {
         objects("scenes", {indices("nodes", "nodes")}),
         objects("nodes", {text("name"), indices("children", "nodes"), index("mesh", "meshes"),
                           index("camera", "cameras"), index("skin", "skins"), numbers("matrix", 16),
-                          numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3),
+                          numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3), numbers("weights", 0),
                           object("extensions", {object("KHR_lights_punctual", {index("light", "lights")})})}),
-        objects("meshes",
-                {text("name"), objects("primitives", {or_else(index_map("attributes", "accessors"), json::object()),
-                                                      index("indices", "accessors"), index("material", "materials"),
-                                                      whole("mode"), index_maps("targets", "accessors")})}),
+        objects("meshes", {text("name"), numbers("weights", 0),
+                           objects("primitives", {or_else(index_map("attributes", "accessors"), json::object()),
+                                                  index("indices", "accessors"), index("material", "materials"),
+                                                  whole("mode"), index_maps("targets", "accessors")})}),
         objects("materials", material_members()),
         objects("textures", {index("source", "images"), index("sampler", "samplers")}),
         objects("images", {text("name"), text("uri"), index("bufferView", "bufferViews")}),
@@ -162,8 +163,14 @@ Members file_members(size_t view_without_bytes) {
                                         required(size("byteLength")), size("byteStride")}),
                 json::array()),
         objects("accessors", accessor_members(view_without_bytes)),
-        objects("animations", {text("name"), objects("samplers", {required(index("input", "accessors")),
-                                                                  required(index("output", "accessors"))})}),
+        objects("animations",
+                {text("name"),
+                 objects("samplers", {required(index("input", "accessors")), required(index("output", "accessors")),
+                                      text("interpolation")}),
+                 objects("channels", {required(whole("sampler")),
+                                      required(object("target", {index("node", "nodes"), required(text("path"))}))})}),
+        objects("skins",
+                {text("name"), index("inverseBindMatrices", "accessors"), required(indices("joints", "nodes"))}),
         // The values that stand for missing ones are those that the loader does not use.
         objects("cameras", {text("name"), required(text("type")),
                             object("perspective", {required(number("yfov")), or_else(number("znear"), 0.1)}),
@@ -227,7 +234,8 @@ class Checker {
                 return number(in, where);
             case Kind::numbers:
                 expect(in.is_array(), in, where, "an array");
-                if (in.size() != member.length) fail("{}: has {} numbers, needs {}", where, in.size(), member.length);
+                if (member.length && in.size() != member.length)
+                    fail("{}: has {} numbers, needs {}", where, in.size(), member.length);
                 return each(in, where, [&](const json& element) { return number(element, where); });
             case Kind::whole:
                 return whole(in, where, INT_MAX);

@@ -31,7 +31,6 @@ class PrimitiveReader {
         check_positions(out);
         read_triangles(out, from_.mode);
         read_attributes(out);
-        if (!from_.targets.empty()) ++loader_.ignored["{} primitives with morph targets shown in their base shape"];
         return true;
     }
 
@@ -40,7 +39,11 @@ class PrimitiveReader {
 
     template <typename Vector>
     std::vector<Vector> vectors(const char* name) {
-        const int accessor = from_.attributes.at(name);
+        return vectors_of<Vector>(from_.attributes.at(name), name);
+    }
+
+    template <typename Vector>
+    std::vector<Vector> vectors_of(int accessor, const char* name) {
         const GltfFile::Accessor info = loader_.file.accessor(accessor);
         constexpr auto components = static_cast<uint32_t>(Vector::length());
         if (info.components != components)
@@ -101,6 +104,8 @@ class PrimitiveReader {
         }
         read_uvs(out);
         read_colors(out);
+        read_joints(out);
+        read_targets(out);
         if (out.normals.empty())
             make_flat(out);
         else if (const size_t repaired = repair_normals(out))
@@ -133,6 +138,50 @@ class PrimitiveReader {
             for (int i = 0; i < 4; ++i) color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.f, 1.f) : 1.f;
     }
 
+    /// JOINTS_0 with WEIGHTS_0 and JOINTS_1 with WEIGHTS_1; whether the joints exist is for the skin to say.
+    void read_joints(Primitive& out) {
+        for (int set = 0; set < 2; ++set) {
+            const std::string joints = fmt::format("JOINTS_{}", set), weights = fmt::format("WEIGHTS_{}", set);
+            if (!has(joints.c_str()) || !has(weights.c_str())) break;
+            const std::vector<glm::vec4> j = vectors<glm::vec4>(joints.c_str()),
+                                         w = vectors<glm::vec4>(weights.c_str());
+            check_count(joints.c_str(), j.size(), out);
+            check_count(weights.c_str(), w.size(), out);
+            out.joints.resize(out.positions.size());
+            for (size_t i = 0; i < j.size(); ++i)
+                for (int k = 0; k < 4; ++k) {
+                    const auto slot = static_cast<size_t>(4 * set + k);
+                    out.joints[i].joints[slot] = static_cast<uint16_t>(std::clamp(j[i][k], 0.f, 65535.f));
+                    out.joints[i].weights[slot] = std::isfinite(w[i][k]) ? std::max(w[i][k], 0.f) : 0.f;
+                }
+        }
+        size_t rescaled = 0;
+        for (JointWeights& vertex : out.joints) {
+            float sum = 0;
+            for (const float weight : vertex.weights) sum += weight;
+            rescaled += std::abs(sum - 1) > 1e-2f;
+            if (sum > 0)
+                for (float& weight : vertex.weights) weight /= sum;
+        }
+        if (rescaled) loader_.ignored["{} vertices whose joint weights do not sum to one rescaled"] += rescaled;
+    }
+
+    void read_targets(Primitive& out) {
+        for (size_t i = 0; i < from_.targets.size(); ++i) {
+            MorphTarget target;
+            for (const auto& [name, accessor] : from_.targets[i]) {
+                if (name != "POSITION" && name != "NORMAL") continue;
+                std::vector<glm::vec3>& values = name == "POSITION" ? target.positions : target.normals;
+                values = vectors_of<glm::vec3>(accessor, name.c_str());
+                check_count(fmt::format("targets[{}].{}", i, name).c_str(), values.size(), out);
+                for (glm::vec3& v : values)
+                    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+                        fail("{}: targets[{}].{} is not finite; repair the mesh", where_, i, name);
+            }
+            out.targets.push_back(std::move(target));
+        }
+    }
+
     GltfLoader& loader_;
     const tinygltf::Primitive& from_;
     const std::string where_;
@@ -144,6 +193,7 @@ void GltfLoader::read_mesh(uint32_t index) {
     const std::vector<tinygltf::Primitive>& primitives = file.model().meshes[index].primitives;
     Mesh& mesh = scene.meshes[index];
     mesh.name = file.model().meshes[index].name;
+    mesh.weights.assign(file.model().meshes[index].weights.begin(), file.model().meshes[index].weights.end());
     for (size_t i = 0; i < primitives.size(); ++i) {
         const std::string where = fmt::format("{}.primitives[{}]", file.where("meshes", index), i);
         Primitive out;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/gltf.h"
 
@@ -18,21 +17,19 @@ glm::vec3 to_vec3(const std::vector<double>& v, const glm::vec3& missing) {
     return v.empty() ? missing : glm::vec3(v[0], v[1], v[2]);
 }
 
-glm::mat4 local_transform(const tinygltf::Node& from) {
-    glm::mat4 out{1};
-    if (!from.matrix.empty()) {
-        for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
-        return out;
-    }
-    glm::quat rotation(1, 0, 0, 0);
+/// Translation, rotation and scale of a node; a rotation without direction counts as none.
+Placement placement_of(const tinygltf::Node& from) {
+    Placement out;
     if (const std::vector<double>& r = from.rotation; !r.empty()) {
+        glm::quat& rotation = out.rotation;
         rotation.x = static_cast<float>(r[0]), rotation.y = static_cast<float>(r[1]);
         rotation.z = static_cast<float>(r[2]), rotation.w = static_cast<float>(r[3]);
         const float length = glm::length(rotation);
         rotation = length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
     }
-    out = glm::translate(out, to_vec3(from.translation, glm::vec3(0))) * glm::mat4_cast(rotation);
-    return glm::scale(out, to_vec3(from.scale, glm::vec3(1)));
+    out.translation = to_vec3(from.translation, glm::vec3(0));
+    out.scale = to_vec3(from.scale, glm::vec3(1));
+    return out;
 }
 
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
@@ -83,7 +80,14 @@ class NodeReader {
         node.name = from.name;
         node.parent = parent;
         node.source = static_cast<int>(index);
-        node.local = local_transform(from);
+        node.fixed = !from.matrix.empty();
+        node.rest = placement_of(from);
+        node.local = node.rest.matrix();
+        for (int i = 0; i < 16 && node.fixed; ++i)
+            node.local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
+        node.skin = from.skin;
+        node.rest_weights.assign(from.weights.begin(), from.weights.end());
+        node.weights = node.rest_weights;
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
         check_finite(world, loader_.file.where("nodes", index));
         if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
@@ -91,7 +95,6 @@ class NodeReader {
         if (const auto light = from.extensions.find("KHR_lights_punctual");
             light != from.extensions.end() && light->second.Has("light"))
             node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
-        if (from.skin >= 0) ++loader_.ignored["{} skinned nodes shown in their rest pose"];
         loader_.scene.nodes.push_back(std::move(node));
         worlds_.push_back(world);
         return static_cast<int>(worlds_.size()) - 1;

@@ -65,6 +65,11 @@ void gather_vertices(Primitive& p, const std::vector<uint32_t>& from) {
     gather(p.normals, from);
     gather(p.uvs, from);
     gather(p.colors, from);
+    gather(p.joints, from);
+    for (MorphTarget& target : p.targets) {
+        gather(target.positions, from);
+        gather(target.normals, from);
+    }
 }
 
 /// One vertex per corner.
@@ -111,6 +116,7 @@ double corner_angle(const Primitive& p, size_t corner) {
 }  // namespace
 
 void make_flat(Primitive& p) {
+    p.flat = true;
     p.normals.clear();
     unshare(p);
     p.normals.resize(p.positions.size());

@@ -2,6 +2,7 @@
 // Conventions (docs/conventions.md): right-handed, +y up, metres; colours linear Rec. 709; angles in radians.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -41,19 +42,51 @@ struct Material {
     bool unlit = false;  ///< KHR_materials_unlit: base colour as it is
 };
 
+/// Joints of a skin that pull at a vertex, and how much; the weights sum to 1, or all are 0 (the vertex follows its
+/// node).
+struct JointWeights {
+    static constexpr int most = 8;
+    std::array<uint16_t, most> joints{};  ///< indices into Skin::joints
+    std::array<float, most> weights{};
+};
+
+/// A shape that a primitive can take on, as differences to its own.
+struct MorphTarget {
+    std::vector<glm::vec3> positions, normals;  ///< one per vertex, or empty: no difference
+};
+
 /// Triangles of one material. `positions`, `normals`, `uvs`, `colors` are per vertex; `uvs` and `colors` may be empty.
 struct Primitive {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  ///< unit length, same count as positions
     std::vector<glm::vec2> uvs;      ///< texture coordinates of the base colour (the set and transform already applied)
     std::vector<glm::vec4> colors;   ///< linear vertex colour that multiplies the base colour
+    std::vector<JointWeights> joints;  ///< one per vertex; empty: no skin moves it
+    std::vector<MorphTarget> targets;
     std::vector<glm::uvec3> triangles;
     uint32_t material = 0;
+    bool flat = false;  ///< the normals are the triangles' own, also after it is deformed; no vertex is shared
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<float> weights;  ///< of the morph targets at rest; missing ones are 0
+};
+
+/// A skeleton: vertices follow the joints, each from where it was when the mesh was bound to it.
+struct Skin {
+    std::string name;
+    std::vector<int> joints;              ///< indices into Scene::nodes
+    std::vector<glm::mat4> inverse_bind;  ///< mesh to joint, one per joint
+};
+
+/// Where a node stands in its parent, by parts: scaled, then rotated, then moved.
+struct Placement {
+    glm::vec3 translation{0};
+    glm::quat rotation{1, 0, 0, 0};
+    glm::vec3 scale{1};
+    glm::mat4 matrix() const;
 };
 
 struct Camera {
@@ -78,8 +111,12 @@ struct Node {
     std::string name;
     int parent = -1;     ///< index into Scene::nodes; a parent always precedes its children
     glm::mat4 local{1};  ///< node to parent
-    int mesh = -1, camera = -1, light = -1;
-    int source = -1;  ///< glTF: index into the file's own nodes (animations and skins speak of those)
+    int mesh = -1, camera = -1, light = -1, skin = -1;
+    Placement rest;              ///< what animations start from; unused where `fixed`
+    bool fixed = true;           ///< no animation can move it: the file gives a matrix, or the scene is no glTF file
+    std::vector<float> weights;  ///< of its mesh's morph targets now; empty: the mesh's own
+    std::vector<float> rest_weights;  ///< the same at rest
+    int source = -1;                  ///< glTF: index into the file's own nodes (animations and skins speak of those)
 };
 
 /// Where light comes from on a miss.
@@ -88,9 +125,25 @@ struct Sky {
     glm::vec3 sun_direction{0};  ///< unit, from the scene to the sun
 };
 
+/// Keys over time for one property of one node (glTF 2.0, section 3.11 and appendix C).
+struct AnimationChannel {
+    enum class Path : uint8_t { translation, rotation, scale, weights };
+    enum class Interpolation : uint8_t { step, linear, cubic };
+    int node = -1;  ///< index into Scene::nodes
+    Path path = Path::translation;
+    Interpolation interpolation = Interpolation::linear;
+    uint32_t width = 3;         ///< numbers per value: 3, 4 (quaternions x y z w), or as many as the mesh has targets
+    std::vector<float> times;   ///< seconds, ascending; at least one
+    std::vector<float> values;  ///< `width` per key; cubic: three times as many (in-tangent, value, out-tangent)
+
+    /// The value at `time`: the first or last key's outside of the keys. Rotations come out unit.
+    std::vector<float> at(float time) const;
+};
+
 struct Animation {
     std::string name;
-    float duration = 0;  ///< seconds
+    float duration = 0;  ///< seconds: the last key of all channels
+    std::vector<AnimationChannel> channels;
 };
 
 struct Scene {
@@ -98,11 +151,12 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
-    std::vector<Node> nodes;                   ///< parents first; only what the file's default scene shows
-    std::vector<Camera> cameras;               ///< in world space, in the order in which the file's nodes show them
-    std::vector<Light> lights;                 ///< in world space
-    std::vector<Animation> animations;         ///< listed only; playing them is the animation module's work
-    std::vector<std::string> extensions_used;  ///< as the file says, sorted
+    std::vector<Node> nodes;      ///< parents first; only what the file's default scene shows
+    std::vector<Camera> cameras;  ///< in world space, in the order in which the file's nodes show them
+    std::vector<Light> lights;    ///< in world space
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
+    std::vector<std::string> extensions_used;         ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
     std::vector<std::string>
         notes;  ///< what was dropped or ignored, one line each, with counts ("3 zero-area triangles dropped")
@@ -144,6 +198,16 @@ std::vector<BuiltinScene> builtin_scenes();
 /// Makes a built-in scene; `name` without "builtin:". Throws Error for an unknown name (listing the known ones) or an
 /// impossible N.
 Scene make_builtin(std::string_view name);
+
+/// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
+/// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
+/// `which`: a name, an index or "all" (of two that move the same, the later one wins). The result depends on nothing
+/// that was done to the scene before. Throws Error for an unknown animation, listing those there are, and for a scene
+/// without any.
+void animate(Scene& scene, const std::string& which, double time);
+
+/// World matrices of all nodes.
+std::vector<glm::mat4> world_matrices(const Scene& scene);
 
 /// World-space triangles of the whole scene (see Geometry). Throws Error when there is no triangle, naming the scene.
 Geometry flatten(const Scene& scene);

@@ -47,7 +47,12 @@ INSTANTIATE_TEST_SUITE_P(
              {"builtin:teapots", "--ldc", "1024", "--spp", "3", "--effects", "reflection,refraction,shadow,ambient"}},
         Case{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "1024"}},
         Case{"car", {"meshes/car2.glb", "--floor", "--ldc", "1024"}},
-        Case{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "1024"}}),
+        Case{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "1024"}},
+        Case{"tiny", {"skinned/tiny.glb", "--animation", "Walk", "--time", "0.4", "--floor", "--ldc", "1024"}},
+        Case{"CesiumMan", {"skinned/CesiumMan.glb", "--time", "0.7", "--floor", "--ldc", "1024"}},
+        Case{"MorphCube", {"skinned/AnimatedMorphCube.glb", "--time", "1.3", "--floor", "--ldc", "1024"}},
+        Case{"InterpolationTest",
+             {"skinned/InterpolationTest.glb", "--animation", "all", "--time", "0.6", "--ldc", "1024"}}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -117,6 +117,9 @@ TEST_F(Usage, ImpossibleValues) {
                     {{"--eye", "0,0,5", "--look", "0,0,0", "--up", "0,0,1"}, "another --up"},
                     {{"--up", "0,0,0"}, "up"},
                     {{"--camera", "7"}, "no cameras"},
+                    {{"--animation", "0"}, "no animation"},
+                    {{"--time", "-1"}, "0 to 1000000"},
+                    {{"--time", "nan"}, "0 to 1000000"},
                     {{"--device", "no such device"}, "peelray devices"},
                     {{"--device", "99"}, "peelray devices"},
                     {{"--stats", out("a.png")}, "written twice"},
@@ -130,7 +133,7 @@ TEST_F(Usage, NotBuiltYet) {
                     {{"--hit", "tolerance"}, "not built into this version"},
                     {{"--traversal", "mipmap"}, "not built into this version"},
                     {{"--traversal", "two-level"}, "not built into this version"},
-                    {{"--time", "1"}, "not built into this version"},
+                    {{"--fps", "30"}, "not built into this version"},
                     {{"--frames", "0:9", "--fps", "30"}, "not built into this version"}});
     expect_refused(run({"bench", "--scenes", "all"}), 1, "'bench' is not built into this version");
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
@@ -150,10 +153,10 @@ TEST_F(Usage, HelpMentionsEveryOption) {
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
-         {"SCENE",    "-o,",       "--size",          "--eye",          "--look",     "--up",      "--fov",
-          "--camera", "--env",     "--sky",           "--background",   "--exposure", "--tonemap", "--bounces",
-          "--spp",    "--effects", "--time",          "--frames",       "--fps",      "--aov",     "--material",
-          "--floor",  "--repeat",  "builtin:teapots", "builtin:blob:N", "1280x1024"}},
+         {"SCENE",      "-o,",       "--size",   "--eye",           "--look",         "--up",      "--fov",
+          "--camera",   "--env",     "--sky",    "--background",    "--exposure",     "--tonemap", "--bounces",
+          "--spp",      "--effects", "--time",   "--animation",     "--frames",       "--fps",     "--aov",
+          "--material", "--floor",   "--repeat", "builtin:teapots", "builtin:blob:N", "1280x1024"}},
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "scene_files.h"
 
@@ -312,21 +313,81 @@ TEST(Gltf, CamerasAndLights) {
     EXPECT_EQ(scene.nodes[3].light, 0);
 }
 
-TEST(Gltf, AnimationsSkinsAndMorphTargetsAreListed) {
-    const TempFolder folder;
+/// A square with a skin of one joint, a morph target, and an animation of its node.
+json moving_square() {
     json gltf = square();
     const size_t times = add_accessor(gltf, pack<float>({0, 0.5f, 2.5f}), 5126, "SCALAR", 3);
-    gltf["animations"] = {
-        {{"name", "walk"}, {"samplers", {{{"input", times}, {"output", times}}}}, {"channels", json::array()}}};
-    gltf["skins"] = {{{"joints", {0}}}};
+    const size_t places = add_accessor(gltf, pack<float>({0, 0, 0, 1, 0, 0, 3, 0, 0}), 5126, "VEC3", 3);
+    const size_t joints = add_accessor(gltf, std::string(16, '\0'), 5121, "VEC4", 4);
+    const size_t weights =
+        add_accessor(gltf, pack<float>({2, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}), 5126, "VEC4", 4);
+    gltf["animations"] = {{{"name", "walk"},
+                           {"samplers", {{{"input", times}, {"output", places}}}},
+                           {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+    gltf["skins"] = {{{"joints", {1}}}};
     gltf["nodes"][0]["skin"] = 0;
+    gltf["nodes"].push_back({{"name", "bone"}});
+    gltf["scenes"][0]["nodes"].push_back(1);
+    primitive(gltf)["attributes"]["JOINTS_0"] = joints;
+    primitive(gltf)["attributes"]["WEIGHTS_0"] = weights;
     primitive(gltf)["targets"] = json::array({{{"POSITION", 0}}});
-    const Scene scene = load(folder, gltf);
+    gltf["meshes"][0]["weights"] = {1};
+    return gltf;
+}
+
+TEST(Gltf, AnimationsSkinsAndMorphTargets) {
+    const TempFolder folder;
+    Scene scene = load(folder, moving_square());
     ASSERT_EQ(scene.animations.size(), 1u);
     EXPECT_EQ(scene.animations[0].name, "walk");
     EXPECT_FLOAT_EQ(scene.animations[0].duration, 2.5f);
-    EXPECT_TRUE(has_note(scene, "1 skinned nodes"));
-    EXPECT_TRUE(has_note(scene, "1 primitives with morph targets"));
+    ASSERT_EQ(scene.skins.size(), 1u);
+    EXPECT_TRUE(has_note(scene, "4 vertices whose joint weights do not sum to one rescaled"));
+    const std::vector<glm::vec3> bound = scene.meshes[0].primitives[0].positions;
+    const Geometry rest = flatten(scene);
+    animate(scene, "walk", 1.5);
+    const Geometry moved = flatten(scene);
+    for (size_t i = 0; i < bound.size(); i++) {
+        expect_near(rest.positions[i], 2.f * bound[i]);  // the target of weight 1 is the square itself
+        expect_near(moved.positions[i], 2.f * bound[i] + glm::vec3(2, 0, 0));
+    }
+}
+
+TEST(Gltf, BadAnimationsAndSkinsAreRefused) {
+    const TempFolder folder;
+    const auto refuse = [&](const std::function<void(json&)>& spoil, const std::string& part) {
+        json gltf = moving_square();
+        spoil(gltf);
+        EXPECT_MENTIONS(error_of(folder, gltf), part);
+    };
+    refuse(
+        [](json& g) {
+            g["animations"][0]["samplers"][0]["input"] =
+                add_accessor(g, pack<float>({0, 0.5f, 0.5f}), 5126, "SCALAR", 3);
+        },
+        "key 2 is not after the one before");
+    refuse(
+        [](json& g) {
+            g["animations"][0]["samplers"][0]["input"] = add_accessor(g, pack<float>({0, NAN, 1}), 5126, "SCALAR", 3);
+        },
+        "key 1 is not after the one before");
+    refuse(
+        [](json& g) {
+            g["animations"][0]["samplers"][0]["output"] = add_accessor(g, pack<float>({0, 0, 0}), 5126, "VEC3", 1);
+        },
+        "3 keys need 9 numbers, the output has 3");
+    refuse([](json& g) { g["animations"][0]["samplers"][0]["interpolation"] = "BEZIER"; }, "\"BEZIER\" is unknown");
+    refuse([](json& g) { g["animations"][0]["channels"][0]["sampler"] = 3; }, "sampler 3 is out of range");
+    refuse([](json& g) { g["animations"][0]["channels"][0]["target"]["node"] = 9; }, "9 is out of range");
+    refuse(
+        [](json& g) {
+            primitive(g)["attributes"]["JOINTS_0"] = add_accessor(g, std::string(16, '\1'), 5121, "VEC4", 4);
+        },
+        "follows joint 1, the skin has 1");
+    refuse([](json& g) { g["skins"][0]["joints"] = {7}; }, "7 is out of range");
+    refuse([](json& g) { g["scenes"][0]["nodes"] = {0}; }, "joint 0 is not part of the scene");
+    refuse([](json& g) { g["skins"][0]["inverseBindMatrices"] = 0; }, "inverseBindMatrices needs a 4x4 matrix");
+    refuse([](json& g) { g["nodes"][1]["children"] = {1}; }, "reached twice");
 }
 
 TEST(Gltf, MirroredAndFlattenedNodes) {

@@ -1,0 +1,157 @@
+// Key frames: glTF 2.0, section 3.11 (animations) and appendix C (interpolation).
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace peelray {
+namespace {
+
+using Path = AnimationChannel::Path;
+using Interpolation = AnimationChannel::Interpolation;
+
+glm::quat quaternion(const float* v) {
+    return {v[3], v[0], v[1], v[2]};
+}
+
+/// Between two rotations along the shorter way.
+void slerp(const float* from, const float* to, float share, std::vector<float>& out) {
+    const glm::quat q = glm::slerp(quaternion(from), quaternion(to), share);
+    out = {q.x, q.y, q.z, q.w};
+}
+
+void make_unit(std::vector<float>& rotation) {
+    double length2 = 0;
+    for (const float v : rotation) length2 += double(v) * v;
+    const double length = std::sqrt(length2);
+    if (!(length > 1e-12)) {
+        rotation = {0, 0, 0, 1};
+        return;
+    }
+    for (float& v : rotation) v = float(v / length);
+}
+
+const Animation* find(const Scene& scene, const std::string& which) {
+    for (size_t i = 0; i < scene.animations.size(); i++)
+        if (scene.animations[i].name == which) return &scene.animations[i];
+    for (size_t i = 0; i < scene.animations.size(); i++)
+        if (std::to_string(i) == which) return &scene.animations[i];
+    return nullptr;
+}
+
+void apply(const AnimationChannel& channel, float time, Scene& scene, std::vector<Placement>& placements) {
+    const std::vector<float> v = channel.at(time);
+    Placement& placement = placements[size_t(channel.node)];
+    switch (channel.path) {
+        case Path::translation:
+            placement.translation = {v[0], v[1], v[2]};
+            break;
+        case Path::rotation:
+            placement.rotation = quaternion(v.data());
+            break;
+        case Path::scale:
+            placement.scale = {v[0], v[1], v[2]};
+            break;
+        case Path::weights:
+            scene.nodes[size_t(channel.node)].weights = v;
+            break;
+    }
+}
+
+glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
+    const float length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : otherwise;
+}
+
+/// Cameras and lights go where their nodes went.
+void carry_along(Scene& scene) {
+    const std::vector<glm::mat4> worlds = world_matrices(scene);
+    for (size_t i = 0; i < scene.nodes.size(); i++) {
+        const Node& node = scene.nodes[i];
+        const glm::vec3 at(worlds[i][3]), ahead = unit_or(-glm::vec3(worlds[i][2]), {0, 0, -1});
+        if (node.camera >= 0) {
+            Camera& camera = scene.cameras[size_t(node.camera)];
+            const float distance = glm::length(camera.look - camera.eye);
+            camera.eye = at;
+            camera.look = at + ahead * distance;
+            camera.up = unit_or(glm::vec3(worlds[i][1]), {0, 1, 0});
+        }
+        if (node.light >= 0) {
+            Light& light = scene.lights[size_t(node.light)];
+            light.position = at;
+            light.direction = ahead;
+        }
+    }
+}
+
+}  // namespace
+
+glm::mat4 Placement::matrix() const {
+    return glm::scale(glm::translate(glm::mat4(1), translation) * glm::mat4_cast(rotation), scale);
+}
+
+std::vector<float> AnimationChannel::at(float time) const {
+    const bool cubic = interpolation == Interpolation::cubic;
+    const size_t stride = width * (cubic ? 3 : 1);
+    const auto value = [&](size_t key) { return &values[key * stride + (cubic ? width : 0)]; };
+    // The last key that is not later than the time.
+    const size_t next = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+    const size_t key = next == 0 ? 0 : next - 1;
+    std::vector<float> out(value(key), value(key) + width);
+    if (next > 0 && next < times.size() && interpolation != Interpolation::step) {
+        const float step = times[next] - times[key], s = (time - times[key]) / step;
+        const float *a = value(key), *b = value(next);
+        if (cubic) {
+            // Hermite's basis; tangents are per second.
+            const float s2 = s * s, s3 = s2 * s;
+            const float *leaving = a + width, *arriving = b - width;
+            for (uint32_t i = 0; i < width; i++)
+                out[i] = (2 * s3 - 3 * s2 + 1) * a[i] + step * (s3 - 2 * s2 + s) * leaving[i] +
+                         (3 * s2 - 2 * s3) * b[i] + step * (s3 - s2) * arriving[i];
+        } else if (path == Path::rotation) {
+            slerp(a, b, s, out);
+        } else {
+            for (uint32_t i = 0; i < width; i++) out[i] = a[i] + s * (b[i] - a[i]);
+        }
+    }
+    if (path == Path::rotation) make_unit(out);
+    return out;
+}
+
+std::vector<glm::mat4> world_matrices(const Scene& scene) {
+    std::vector<glm::mat4> worlds;
+    worlds.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes)
+        worlds.push_back(node.parent < 0 ? node.local : worlds[size_t(node.parent)] * node.local);
+    return worlds;
+}
+
+void animate(Scene& scene, const std::string& which, double time) {
+    if (scene.animations.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
+    const Animation* one = which == "all" ? nullptr : find(scene, which);
+    if (which != "all" && !one) {
+        std::string names;
+        for (size_t i = 0; i < scene.animations.size(); i++)
+            names += fmt::format("{}{}: {}", i ? ", " : "", i,
+                                 scene.animations[i].name.empty() ? "(no name)" : scene.animations[i].name);
+        fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
+    }
+    std::vector<Placement> placements;
+    for (Node& node : scene.nodes) {
+        placements.push_back(node.rest);
+        node.weights = node.rest_weights;
+    }
+    for (const Animation& animation : scene.animations) {
+        if (one && &animation != one) continue;
+        const double past =
+            animation.duration > 0 && time > animation.duration ? std::fmod(time, animation.duration) : time;
+        for (const AnimationChannel& channel : animation.channels) apply(channel, float(past), scene, placements);
+    }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
+    carry_along(scene);
+}
+
+}  // namespace peelray

@@ -1,0 +1,83 @@
+#include "scene/deform.h"
+
+#include <cmath>
+
+namespace peelray {
+namespace {
+
+/// Moves points and normals; normals by the cofactors, which stay finite where there is no inverse.
+struct Mover {
+    glm::mat4 matrix;
+    glm::dmat3 cofactors;
+    bool mirrors;
+
+    explicit Mover(const glm::mat4& m) : matrix(m) {
+        const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+        cofactors = glm::dmat3(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+        mirrors = glm::dot(x, cofactors[0]) < 0;
+        if (mirrors) cofactors *= -1.0;
+    }
+};
+
+glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& otherwise) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : otherwise;
+}
+
+/// The primitive in its own space with its morph targets mixed in.
+void morph(const Primitive& primitive, std::span<const float> weights, Deformed& out) {
+    out.positions = primitive.positions;
+    out.normals = primitive.normals;
+    for (size_t k = 0; k < std::min(primitive.targets.size(), weights.size()); k++) {
+        const MorphTarget& target = primitive.targets[k];
+        if (weights[k] == 0) continue;
+        for (size_t i = 0; i < target.positions.size(); i++) out.positions[i] += weights[k] * target.positions[i];
+        for (size_t i = 0; i < target.normals.size(); i++) out.normals[i] += weights[k] * target.normals[i];
+    }
+}
+
+/// Of each joint: from the mesh as it was bound to where the joint is now.
+std::vector<glm::mat4> joint_matrices(const Skin& skin, std::span<const glm::mat4> worlds) {
+    std::vector<glm::mat4> out;
+    for (size_t i = 0; i < skin.joints.size(); i++)
+        out.push_back(worlds[size_t(skin.joints[i])] * skin.inverse_bind[i]);
+    return out;
+}
+
+glm::mat4 blended(const JointWeights& vertex, const std::vector<glm::mat4>& joints, const glm::mat4& otherwise) {
+    glm::mat4 sum(0);
+    float weight = 0;
+    for (size_t k = 0; k < vertex.weights.size(); k++) {
+        if (vertex.weights[k] == 0) continue;
+        sum += vertex.weights[k] * joints[vertex.joints[k]];
+        weight += vertex.weights[k];
+    }
+    return weight > 0 ? sum : otherwise;
+}
+
+}  // namespace
+
+Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive, std::span<const float> weights,
+                std::span<const glm::mat4> worlds, const glm::mat4& world) {
+    Deformed out;
+    morph(primitive, weights, out);
+    const bool skinned = node.skin >= 0 && !primitive.joints.empty();
+    std::vector<glm::mat4> joints;
+    if (skinned) joints = joint_matrices(scene.skins[size_t(node.skin)], worlds);
+    Mover mover(world);
+    for (size_t i = 0; i < out.positions.size(); i++) {
+        if (skinned) mover = Mover(blended(primitive.joints[i], joints, world));
+        if (i == 0) out.mirrors = mover.mirrors;
+        out.positions[i] = glm::vec3(mover.matrix * glm::vec4(out.positions[i], 1));
+        out.normals[i] = unit_or(mover.cofactors * glm::dvec3(out.normals[i]), primitive.normals[i]);
+    }
+    if (primitive.flat)
+        for (const glm::uvec3& t : primitive.triangles) {
+            const glm::dvec3 a = out.positions[t.x], b = out.positions[t.y], c = out.positions[t.z];
+            const glm::vec3 normal = unit_or((out.mirrors ? -1.0 : 1.0) * glm::cross(b - a, c - a), out.normals[t.x]);
+            out.normals[t.x] = out.normals[t.y] = out.normals[t.z] = normal;
+        }
+    return out;
+}
+
+}  // namespace peelray

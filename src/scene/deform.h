@@ -1,0 +1,27 @@
+// Morph targets and skins: where a primitive's vertices are now. Private to src/scene.
+#pragma once
+
+#include <span>
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+/// A primitive's vertices in world space.
+struct Deformed {
+    std::vector<glm::vec3> positions, normals;
+    bool mirrors = false;  ///< the transform turns the triangles inside out
+};
+
+/// Is the primitive's shape at rest all that there is?
+inline bool is_rigid(const Primitive& primitive, const Node& node) {
+    return primitive.targets.empty() && (primitive.joints.empty() || node.skin < 0);
+}
+
+/// Morphs (glTF 2.0, section 3.7.2.2), then moves: by the skin's joints (section 3.7.3.3), or by the node where a
+/// vertex has none. `worlds`: of all nodes. Normals come out unit; those of flat primitives are the moved triangles'
+/// own.
+Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive, std::span<const float> weights,
+                std::span<const glm::mat4> worlds, const glm::mat4& world);
+
+}  // namespace peelray
