@@ -23,6 +23,7 @@ namespace peelray {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using test::oracle_ray;
 using test::RayKind;
 
 struct Options {
@@ -58,10 +59,6 @@ struct Tally {
         if (other.worst_wrong.off > worst_wrong.off) worst_wrong = other.worst_wrong;
     }
 };
-
-OracleRay oracle_ray(const Ray& ray) {
-    return {glm::dvec3(ray.origin), ray.tmin, glm::dvec3(ray.direction), ray.tmax};
-}
 
 /// One scene with its cube on the device, and its oracle.
 class Bench {

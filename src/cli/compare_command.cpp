@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/text.h"
 #include "cli/picture_maker.h"
 #include "cli/stats.h"
 #include "image/report.h"
@@ -123,8 +124,7 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
 }
 
 void render(Entry& entry, PictureMaker& maker, RenderSettings settings) {
-    settings.hit_auto = entry.hit == "auto";
-    settings.hit = entry.hit == "planar" ? HitTest::planar : HitTest::exact;
+    choose_hit(settings, entry.hit);
     MadePicture made = maker.make(entry.tracer, settings);
     entry.encoded = {made.picture.width, made.picture.height, std::move(made.picture.encoded)};
     entry.radiance = {made.picture.width, made.picture.height, std::move(made.picture.radiance)};

@@ -127,6 +127,11 @@ void check_ranges(const PictureArguments& a) {
     check_repeat(a.repeat);
 }
 
+void choose_hit(RenderSettings& settings, const std::string& hit) {
+    settings.hit_auto = hit == "auto";
+    settings.hit = hit == "planar" ? HitTest::planar : HitTest::exact;
+}
+
 RenderSettings settings_of(const PictureArguments& a) {
     const auto has = [&](const char* effect) {
         return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end();
@@ -135,8 +140,7 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.width = a.size.x;
     settings.height = a.size.y;
     settings.ldc = a.tracing.ldc.value_or(0);
-    settings.hit_auto = a.tracing.hit == "auto";
-    settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
+    choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;
     settings.spp = a.spp;
     settings.repeat = a.repeat;

@@ -15,6 +15,8 @@ struct PreparedScene {
 
 /// Throws Error for values that are well-formed but make no sense.
 void check_ranges(const PictureArguments& arguments);
+/// Settings for a hit test by its name: auto, exact or planar.
+void choose_hit(RenderSettings& settings, const std::string& hit);
 /// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);
 /// Loads the scene and applies --material, --floor, the camera and the light. Throws Error.

@@ -60,13 +60,6 @@ std::string one_line(std::string text) {
     return text;
 }
 
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
-
 void print_note(const std::string& text) {
     fmt::print(stderr, "peelray: note: {}\n", one_line(text));
 }

@@ -81,8 +81,6 @@ void run_devices();
 Geometry visible_geometry(const Scene& scene);
 /// Whatever a file's names brought along, as one line without terminal codes.
 std::string one_line(std::string text);
-/// A file's extension with its dot, in lower case.
-std::string lower_extension(const std::filesystem::path& path);
 /// A line on standard error that is no complaint.
 void print_note(const std::string& text);
 /// Throws Error unless `repeat` is a sensible number of measurements.

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/text.h"
 #include "cli/picture_maker.h"
 #include "cli/stats.h"
 #include "image/image.h"

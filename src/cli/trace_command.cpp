@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "cli/program.h"
+#include "cli/prepare.h"
 #include "cli/stats.h"
 #include "image/image.h"
 #include "image/npy.h"
@@ -97,8 +97,7 @@ void run_trace(const TraceArguments& a) {
 
     RenderSettings settings;
     settings.ldc = a.tracing.ldc.value_or(0);
-    settings.hit_auto = a.tracing.hit == "auto";
-    settings.hit = a.tracing.hit == "planar" ? HitTest::planar : HitTest::exact;
+    choose_hit(settings, a.tracing.hit);
     const AutoChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
     Device device({a.device.device, a.device.validate});

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace peelray {
 namespace {
@@ -51,11 +52,6 @@ int rank(VkPhysicalDeviceType type) {
         default:
             return 4;
     }
-}
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
 }
 
 /// What the device lacks of the features that the passes use; empty: nothing.
@@ -168,7 +164,7 @@ PhysicalDevice choose_device(VkInstance instance, const std::string& select) {
     for (const auto& device : devices) {
         const bool match = select.empty() ? device.info.usable
                            : number       ? std::to_string(device.info.index) == select
-                                          : lower(device.info.name).find(lower(select)) != std::string::npos;
+                                          : lower_case(device.info.name).find(lower_case(select)) != std::string::npos;
         if (match && !chosen) chosen = &device;
     }
     if (!chosen && !select.empty()) fail("no Vulkan device '{}': there is {} (see 'peelray devices')", select, names);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/codecs.h"
 
 namespace peelray {
@@ -16,12 +17,6 @@ constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 float sanitised(float value) {
     if (!(value > 0)) return 0;
     return std::isinf(value) ? max_half : value;
-}
-
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
 }
 
 }  // namespace

@@ -6,8 +6,7 @@ namespace peelray {
 
 bool ObjectSummary::reflects_or_refracts(const PictureSettings& settings) const {
     if (settings.refraction && transmits) return true;
-    const bool traced = settings.spp > 1 ? smoothest < 0.6f || metallic : smoothest < 0.5f;
-    return settings.reflection && (traced || transmits);
+    return settings.reflection && (transmits || is_reflection_traced(smoothest, metallic, settings.spp));
 }
 
 ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
@@ -26,7 +25,7 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             last = geometry.materials[i];
             const Material& m = scene.materials[last];
             if (m.unlit) continue;
-            s.transmits |= m.transmission > 0 && m.metallic < 1;
+            s.transmits |= transmits(m);
             s.metallic |= m.metallic > 0.5f;
             s.smoothest = std::min(s.smoothest, m.roughness);
             s.roughest = std::max(s.roughest, m.roughness);

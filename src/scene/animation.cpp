@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/transform.h"
 
 namespace peelray {
 namespace {
@@ -60,28 +61,23 @@ void apply(const AnimationChannel& channel, float time, Scene& scene, std::vecto
     }
 }
 
-glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : otherwise;
-}
-
 /// Cameras and lights go where their nodes went.
 void carry_along(Scene& scene) {
     const std::vector<glm::mat4> worlds = world_matrices(scene);
     for (size_t i = 0; i < scene.nodes.size(); i++) {
         const Node& node = scene.nodes[i];
-        const glm::vec3 at(worlds[i][3]), ahead = unit_or(-glm::vec3(worlds[i][2]), {0, 0, -1});
+        const Pose pose(worlds[i]);
         if (node.camera >= 0) {
             Camera& camera = scene.cameras[size_t(node.camera)];
             const float distance = glm::length(camera.look - camera.eye);
-            camera.eye = at;
-            camera.look = at + ahead * distance;
-            camera.up = unit_or(glm::vec3(worlds[i][1]), {0, 1, 0});
+            camera.eye = pose.at;
+            camera.look = pose.at + pose.ahead * distance;
+            camera.up = pose.up;
         }
         if (node.light >= 0) {
             Light& light = scene.lights[size_t(node.light)];
-            light.position = at;
-            light.direction = ahead;
+            light.position = pose.at;
+            light.direction = pose.ahead;
         }
     }
 }

@@ -1,28 +1,11 @@
 #include "scene/deform.h"
 
-#include <cmath>
+#include <algorithm>
+
+#include "scene/transform.h"
 
 namespace peelray {
 namespace {
-
-/// Moves points and normals; normals by the cofactors, which stay finite where there is no inverse.
-struct Mover {
-    glm::mat4 matrix;
-    glm::dmat3 cofactors;
-    bool mirrors;
-
-    explicit Mover(const glm::mat4& m) : matrix(m) {
-        const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
-        cofactors = glm::dmat3(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
-        mirrors = glm::dot(x, cofactors[0]) < 0;
-        if (mirrors) cofactors *= -1.0;
-    }
-};
-
-glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& otherwise) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : otherwise;
-}
 
 /// The primitive in its own space with its morph targets mixed in.
 void morph(const Primitive& primitive, std::span<const float> weights, Deformed& out) {
@@ -64,12 +47,16 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
     const bool skinned = node.skin >= 0 && !primitive.joints.empty();
     std::vector<glm::mat4> joints;
     if (skinned) joints = joint_matrices(scene.skins[size_t(node.skin)], worlds);
-    Mover mover(world);
+    glm::mat4 matrix = world;
+    NormalTransform to_normal(world);
     for (size_t i = 0; i < out.positions.size(); i++) {
-        if (skinned) mover = Mover(blended(primitive.joints[i], joints, world));
-        if (i == 0) out.mirrors = mover.mirrors;
-        out.positions[i] = glm::vec3(mover.matrix * glm::vec4(out.positions[i], 1));
-        out.normals[i] = unit_or(mover.cofactors * glm::dvec3(out.normals[i]), primitive.normals[i]);
+        if (skinned) {
+            matrix = blended(primitive.joints[i], joints, world);
+            to_normal = NormalTransform(matrix);
+        }
+        if (i == 0) out.mirrors = to_normal.mirrors;
+        out.positions[i] = glm::vec3(matrix * glm::vec4(out.positions[i], 1));
+        out.normals[i] = to_normal(out.normals[i], primitive.normals[i]);
     }
     if (primitive.flat)
         for (const glm::uvec3& t : primitive.triangles) {

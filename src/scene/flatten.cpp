@@ -4,31 +4,11 @@
 #include "base/error.h"
 #include "scene/deform.h"
 #include "scene/scene.h"
+#include "scene/transform.h"
 
 namespace peelray {
 
 namespace {
-
-/// Transforms normals: the cofactors of the 3×3 part are its inverse transpose times the determinant, and stay finite
-/// where it has no inverse (a mesh scaled flat).
-struct NormalTransform {
-    glm::dmat3 cofactors;
-    bool mirrors;
-
-    explicit NormalTransform(const glm::mat4& world) {
-        const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
-        cofactors = glm::dmat3(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
-        mirrors = glm::dot(x, cofactors[0]) < 0;
-        if (mirrors) cofactors *= -1.0;
-    }
-
-    glm::vec3 operator()(const glm::vec3& normal) const {
-        const glm::dvec3 out = cofactors * glm::dvec3(normal);
-        const double length = glm::length(out);
-        if (length > 0 && std::isfinite(length)) return glm::vec3(out / length);
-        return glm::length(normal) > 0 ? glm::normalize(normal) : glm::vec3(0, 1, 0);
-    }
-};
 
 struct Totals {
     uint64_t vertices = 0, triangles = 0;
@@ -71,7 +51,8 @@ void append_rigid(Geometry& out, const Primitive& primitive, const glm::mat4& wo
                   const Node& node) {
     for (size_t i = 0; i < primitive.positions.size(); ++i)
         append_position(out, glm::vec3(world * glm::vec4(primitive.positions[i], 1)), node, i);
-    for (const glm::vec3& normal : primitive.normals) out.normals.push_back(to_normal(normal));
+    for (const glm::vec3& normal : primitive.normals)
+        out.normals.push_back(to_normal(normal, unit_or(normal, glm::vec3(0, 1, 0))));
 }
 
 void append_deformed(Geometry& out, const Deformed& deformed, const Node& node) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scene/gltf.h"
+#include "scene/transform.h"
 
 namespace peelray {
 
@@ -30,11 +31,6 @@ Placement placement_of(const tinygltf::Node& from) {
     out.translation = to_vec3(from.translation, glm::vec3(0));
     out.scale = to_vec3(from.scale, glm::vec3(1));
     return out;
-}
-
-glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-    const float length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : otherwise;
 }
 
 class NodeReader {
@@ -113,9 +109,10 @@ class NodeReader {
         const std::string where = loader_.file.where("cameras", index);
         Camera camera;
         camera.name = from.name.empty() ? node.name : from.name;
-        camera.eye = glm::vec3(world[3]);
-        camera.look = camera.eye + unit_or(-glm::vec3(world[2]), {0, 0, -1});
-        camera.up = unit_or(glm::vec3(world[1]), {0, 1, 0});
+        const Pose pose(world);
+        camera.eye = pose.at;
+        camera.look = pose.at + pose.ahead;
+        camera.up = pose.up;
         if (from.type == "perspective") {
             camera.vertical_fov = static_cast<float>(from.perspective.yfov);
             if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
@@ -139,8 +136,9 @@ class NodeReader {
         else if (from.type != "directional")
             fail("{}: the light type \"{}\" is unknown", loader_.file.where("lights", index), printable(from.type, 20));
         light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
-        light.position = glm::vec3(world[3]);
-        light.direction = unit_or(-glm::vec3(world[2]), {0, 0, -1});
+        const Pose pose(world);
+        light.position = pose.at;
+        light.direction = pose.ahead;
         if (from.range > 0) light.range = static_cast<float>(from.range);
         light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
         light.outer_cone = static_cast<float>(from.spot.outerConeAngle);

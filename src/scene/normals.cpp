@@ -1,5 +1,7 @@
 #include "scene/normals.h"
 
+#include "scene/transform.h"
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -13,11 +15,6 @@ namespace {
 glm::dvec3 area_vector(const Primitive& p, const glm::uvec3& t) {
     const glm::dvec3 a = p.positions[t.x], b = p.positions[t.y], c = p.positions[t.z];
     return glm::cross(b - a, c - a);
-}
-
-glm::vec3 unit_or(const glm::dvec3& v, const glm::vec3& otherwise) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : otherwise;
 }
 
 constexpr glm::vec3 any_normal{0, 1, 0};

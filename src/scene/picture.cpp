@@ -10,9 +10,7 @@ namespace peelray {
 bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp) {
     return std::any_of(geometry.materials.begin(), geometry.materials.end(), [&](uint32_t index) {
         const Material& m = scene.materials[index];
-        if (m.unlit) return false;
-        if (m.transmission > 0 && m.metallic < 1) return true;
-        return spp > 1 ? m.roughness < 0.6f || m.metallic > 0.5f : m.roughness < 0.5f;
+        return !m.unlit && (transmits(m) || is_reflection_traced(m.roughness, m.metallic > 0.5f, spp));
     });
 }
 

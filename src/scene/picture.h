@@ -45,6 +45,17 @@ struct Picture {
     RayCounts rays;
 };
 
+/// Does light pass through the material?
+inline bool transmits(const Material& material) {
+    return material.transmission > 0 && material.metallic < 1;
+}
+
+/// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more
+/// than half.
+inline bool is_reflection_traced(float roughness, bool metallic, uint32_t spp) {
+    return spp > 1 ? roughness < 0.6f || metallic : roughness < 0.5f;
+}
+
 /// Does any surface start reflected or refracted rays? Rough ones do not (docs/frame.md section 4).
 bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp);
 

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/assimp_loader.h"
 #include "scene/files.h"
 #include "scene/gltf.h"
@@ -13,9 +14,7 @@ namespace peelray {
 namespace {
 
 Scene load_file(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+    const std::string extension = lower_extension(path);
     if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
     if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off")
         return load_assimp(path, extension);

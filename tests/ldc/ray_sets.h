@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "params.h"
+#include "reference/oracle.h"
 #include "scene/scene.h"
 
 namespace peelray::test {
@@ -14,6 +15,11 @@ enum class RayKind { uniform, grazing, axis_parallel, on_surface };
 inline const char* name_of(RayKind kind) {
     const char* names[] = {"uniform", "grazing", "axis-parallel", "on surface"};
     return names[int(kind)];
+}
+
+/// The same ray for the oracle.
+inline OracleRay oracle_ray(const Ray& ray) {
+    return {glm::dvec3(ray.origin), ray.tmin, glm::dvec3(ray.direction), ray.tmax};
 }
 
 /// Makes rays of one kind; the same seed gives the same rays.

@@ -16,6 +16,7 @@
 namespace peelray {
 namespace {
 
+using test::oracle_ray;
 using test::RayKind;
 const float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -56,10 +57,6 @@ class TracedScene {
     Cube cube_;
     HitTest test_;
 };
-
-OracleRay oracle_ray(const Ray& ray) {
-    return {glm::dvec3(ray.origin), ray.tmin, glm::dvec3(ray.direction), ray.tmax};
-}
 
 /// Runs `body(i)` for all i on all cores.
 template <typename Body>
