@@ -1,9 +1,10 @@
 // Access to the scene during a frame: materials, textures, environment, and the surface at a hit.
 // Include after the buffers it reads: frame, materials, texture_infos, texels, normals, uvs, colors, triangle_materials,
-// positions, triangles, environment. Directions point away from the surface.
+// positions, triangles, instances, environment. Directions point away from the surface.
 #ifndef PEELRAY_FRAME_GLSL
 #define PEELRAY_FRAME_GLSL
 
+#include "placed.glsl"
 #include "shading.glsl"
 
 /// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
@@ -17,6 +18,7 @@ struct Surface {
     vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
     vec3 base_color;
     float error;       ///< bound on the position's rounding error, world units
+    float offset;      ///< height above it from which secondary rays count, world units (planar hits)
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
 };
@@ -58,17 +60,38 @@ vec4 sampleTexture(int index, vec2 uv) {
     return mix(top, bottom, f.y);
 }
 
-Surface surfaceAt(uint triangle, vec2 uv, vec3 direction) {
+/// A normal as its instance turns it, unit: cofactors are the inverse transpose times the determinant.
+vec3 placedNormal(mat3 cofactors, vec3 n) {
+    const vec3 turned = cofactors * n;
+    return dot(turned, turned) > 0.0 ? normalize(turned) : n;
+}
+
+Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     Surface s;
     const uvec3 corners = triangles[triangle];
-    const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
-    const vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
+    vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    vec3 reach = max(abs(a), max(abs(b), abs(c)));
+    float turned = 1.0;
+    if (instances[instance].cube.moved != 0u) {
+        const GpuTransform to_world = instances[instance].to_world;
+        const mat3 m = to_world.linear;
+        reach = mat3(abs(m[0]), abs(m[1]), abs(m[2])) * reach + abs(to_world.position);
+        a = placedFrom(to_world, a, vec3(0));
+        b = placedFrom(to_world, b, vec3(0));
+        c = placedFrom(to_world, c, vec3(0));
+        turned = instances[instance].mirrored != 0u ? -1.0 : 1.0;
+        const mat3 cofactors = turned * mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+        na = placedNormal(cofactors, na);
+        nb = placedNormal(cofactors, nb);
+        nc = placedNormal(cofactors, nc);
+    }
     uv = clamp(uv, vec2(0), vec2(1));  // planar hits may lie beside their triangle
     const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
     s.position = a * weights.x + b * weights.y + c * weights.z;
-    const vec3 largest = max(abs(a), max(abs(b), abs(c)));
-    s.error = max(largest.x, max(largest.y, largest.z)) * 1e-6;
-    const vec3 cross_product = cross(b - a, c - a);
+    s.error = largest(reach) * 1e-6;
+    s.offset = frame[0].surface_offset * instances[instance].voxel;
+    const vec3 cross_product = turned * cross(b - a, c - a);
     const float size = length(cross_product);
     vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;
     normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0, 1, 0);
@@ -142,12 +165,12 @@ vec3 transmittance(uint medium, float t) {
 
 /// A ray along `direction` as far as `reach` from the point `start` of a surface. It starts off the triangle's plane by the
 /// position's error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6).
-/// Planar hits know surfaces to a voxel only: there a ray counts from where it is frame[0].surface_offset above the plane. It
+/// Planar hits know surfaces to a voxel only: there a ray counts from where it is Surface::offset above the plane. It
 /// stays on its line until then, unless it is so flat that it would miss too much: then it is lifted as well.
 Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
     const float slope = dot(direction, s.geometric);
-    const float first = min(frame[0].surface_offset / max(abs(slope), 1e-6), FLATTEST_START * frame[0].surface_offset);
-    const float lift = s.error + (frame[0].surface_offset - first * abs(slope));
+    const float first = min(s.offset / max(abs(slope), 1e-6), FLATTEST_START * s.offset);
+    const float lift = s.error + (s.offset - first * abs(slope));
     return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
 }
 

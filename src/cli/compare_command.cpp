@@ -158,7 +158,7 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
         const bool cpu = entry.tracer == "reference";
         facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s["frame_ms"]));
         if (s.value("build_ms", 0.0) > 0)
-            facts.emplace_back(cpu ? "hierarchy" : "of which the cube", ms(s["build_ms"]));
+            facts.emplace_back(cpu ? "hierarchy" : "of which the cubes", ms(s["build_ms"]));
     }
     if (s.contains("rays")) {
         uint64_t secondary = 0;
@@ -168,9 +168,10 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     }
     if (s.contains("ldc")) {
         const Json& cube = s["ldc"];
-        facts.emplace_back("cube", fmt::format("{}³, {} hits", cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
+        facts.emplace_back("cubes", fmt::format("{} of up to {}³, {} hits", cube["count"].get<uint32_t>(), cube["n"].get<uint32_t>(),
+                                               s["hit"].get<std::string>()));
         facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
-        facts.emplace_back("cube in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
+        facts.emplace_back("cubes in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
     }
     if (s.contains("cubemap")) {
         const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];

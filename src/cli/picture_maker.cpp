@@ -28,7 +28,9 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
     if (!device_) device_ = std::make_unique<Device>(DeviceOptions{arguments_.device, arguments_.validate});
     // Each picture has a renderer of its own: what one needed must not count as another's memory.
     device_->reset_peak();
-    Renderer renderer(*device_, scene_.scene, scene_.geometry, scene_.environment);
+    const Assembly assembly = assemble(scene_.scene, motion_of(scene_.scene, ""));
+    Renderer renderer(*device_, scene_.scene, assembly, {scene_.geometry.lower, scene_.geometry.upper},
+                      scene_.environment);
     Progress progress("rendering", 1);
     RenderResult result = renderer.render(settings, [&](double share) {
         check_interrupt();
@@ -37,9 +39,12 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
     device_->check_validation();
     MadePicture made;
     const RenderStats& s = result.stats;
-    made.stats = render_stats(*device_, result, scene_.geometry);
+    made.stats = render_stats(*device_, result, scene_.geometry.triangles.size(),
+                              {scene_.geometry.lower, scene_.geometry.upper});
     made.device = device_->info().name;
-    if (s.ldc) made.summary = fmt::format(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
+    if (s.cubes.bodies)
+        made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
+                                   s.cubes.resolution, s.hit == HitTest::exact ? "exact" : "planar");
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
                                    s.maps.shadows.maps);

@@ -22,11 +22,12 @@ uint32_t level_offset(uint32_t face, uint32_t level) {
 
 }  // namespace
 
-CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry)
+CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry,
+                   const Bounds& bounds)
     : device_(device),
       scene_(scene),
-      lower_(geometry.lower),
-      upper_(geometry.upper),
+      lower_(bounds.lower),
+      upper_(bounds.upper),
       objects_(source, geometry),
       shadows_(device),
       target_(device) {}
@@ -200,7 +201,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"states", level.states},
                                    {"hits", level.hits},
                                    {"nodes", level.nodes},
-                                   {"triangle_objects", objects_.triangle_objects()},
+                                   {"triangle_objects", scene_.triangle_objects},
                                    {"objects", current_ ? with_probes_ : objects_.without_probes()},
                                    {"probes", current_ ? *current_ : texels_[0]}}),
                  params, groups);

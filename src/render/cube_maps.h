@@ -10,7 +10,11 @@ namespace peelray {
 class CubeMaps {
   public:
     /// Takes from `source` and `geometry` what it needs; `scene` must outlive it.
-    CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry);
+    CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry,
+             const Bounds& bounds);
+
+    /// Takes on another moment of the same scene.
+    void move(const Geometry& geometry) { objects_.move(geometry); }
 
     /// Chooses the objects that get a probe and the faces' size; makes room for probes and shadow maps. `picture`: the
     /// picture's constants, on which those of the maps' views are modelled.

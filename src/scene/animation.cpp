@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/error.h"
-#include "scene/scene.h"
+#include "scene/motion.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -34,12 +34,23 @@ void make_unit(std::vector<float>& rotation) {
     for (float& v : rotation) v = float(v / length);
 }
 
-const Animation* find(const Scene& scene, const std::string& which) {
-    for (size_t i = 0; i < scene.animations.size(); i++)
-        if (scene.animations[i].name == which) return &scene.animations[i];
-    for (size_t i = 0; i < scene.animations.size(); i++)
-        if (std::to_string(i) == which) return &scene.animations[i];
-    return nullptr;
+/// The animations that a name, an index or "all" stands for.
+std::vector<const Animation*> find(const Scene& scene, const std::string& which) {
+    const std::vector<Animation>& list = scene.animations;
+    if (list.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
+    if (which == "all") {
+        std::vector<const Animation*> all;
+        for (const Animation& animation : list) all.push_back(&animation);
+        return all;
+    }
+    for (size_t i = 0; i < list.size(); i++)
+        if (list[i].name == which) return {&list[i]};
+    for (size_t i = 0; i < list.size(); i++)
+        if (std::to_string(i) == which) return {&list[i]};
+    std::string names;
+    for (size_t i = 0; i < list.size(); i++)
+        names += fmt::format("{}{}: {}", i ? ", " : "", i, list[i].name.empty() ? "(no name)" : list[i].name);
+    fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
 }
 
 void apply(const AnimationChannel& channel, float time, Scene& scene, std::vector<Placement>& placements) {
@@ -125,29 +136,45 @@ std::vector<glm::mat4> world_matrices(const Scene& scene) {
 }
 
 void animate(Scene& scene, const std::string& which, double time) {
-    if (scene.animations.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
-    const Animation* one = which == "all" ? nullptr : find(scene, which);
-    if (which != "all" && !one) {
-        std::string names;
-        for (size_t i = 0; i < scene.animations.size(); i++)
-            names += fmt::format("{}{}: {}", i ? ", " : "", i,
-                                 scene.animations[i].name.empty() ? "(no name)" : scene.animations[i].name);
-        fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
-    }
+    const std::vector<const Animation*> chosen = find(scene, which);
     std::vector<Placement> placements;
     for (Node& node : scene.nodes) {
         placements.push_back(node.rest);
         node.weights = node.rest_weights;
     }
-    for (const Animation& animation : scene.animations) {
-        if (one && &animation != one) continue;
+    for (const Animation* animation : chosen) {
         const double past =
-            animation.duration > 0 && time > animation.duration ? std::fmod(time, animation.duration) : time;
-        for (const AnimationChannel& channel : animation.channels) apply(channel, float(past), scene, placements);
+            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
+        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), scene, placements);
     }
     for (size_t i = 0; i < scene.nodes.size(); i++)
         if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
     carry_along(scene);
+}
+
+/// Does the channel ever change what it sets? Exporters write many that do not.
+static bool varies(const AnimationChannel& channel) {
+    const bool cubic = channel.interpolation == Interpolation::cubic;
+    const size_t width = channel.width, stride = width * (cubic ? 3 : 1);
+    for (size_t i = 0; i < channel.values.size(); i++) {
+        const bool tangent = cubic && i % stride / width != 1;
+        if (channel.values[i] != (tangent ? 0 : channel.values[(cubic ? width : 0) + i % width])) return true;
+    }
+    return false;
+}
+
+Motion motion_of(const Scene& scene, const std::string& which) {
+    const std::vector<bool> none(scene.nodes.size(), false);
+    Motion motion{none, none, none};
+    if (which.empty()) return motion;
+    for (const Animation* animation : find(scene, which))
+        for (const AnimationChannel& channel : animation->channels) {
+            if (!varies(channel)) continue;
+            const auto node = size_t(channel.node);
+            (channel.path == Path::weights ? motion.morphs : motion.moves)[node] = true;
+            if (channel.path == Path::scale) motion.scales[node] = true;
+        }
+    return motion;
 }
 
 }  // namespace peelray

@@ -183,6 +183,11 @@ struct Geometry {
     uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
 };
 
+/// A box; lower > upper: empty.
+struct Bounds {
+    glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
+};
+
 /// Reads a scene: "builtin:NAME" or a file (.gltf, .glb; .obj, .ply, .stl, .off through Assimp).
 /// Throws Error (one line: what, where, what to do) for a file that is missing, empty, truncated, without triangles,
 /// with indices or accessors out of range, with NaN or infinite vertices, or that requires an unknown extension. A glTF

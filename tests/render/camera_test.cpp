@@ -198,9 +198,8 @@ TEST_F(CameraTest, TheSamePictureTwice) {
     settings.ambient = true;
     const Stage stage = everything();
     const Environment sky = sky_environment(default_sun_direction());
-    const Geometry geometry = flatten(stage.scene);
-    Renderer renderer(device(), stage.scene, geometry, sky);
-    const RenderResult first = renderer.render(settings), again = renderer.render(settings),
+    const auto renderer = renderer_for(stage, sky);
+    const RenderResult first = renderer->render(settings), again = renderer->render(settings),
                        fresh = render(stage, sky, settings);
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);
