@@ -3,7 +3,6 @@
 #version 460
 #include "common.glsl"
 #include "params.h"
-#include "bounds.glsl"
 layout(local_size_x = 64) in;
 PARAMS(DeformParams)
 BUFFER(readonly, 0, DeformPiece, pieces)
@@ -17,8 +16,7 @@ BUFFER(writeonly, 7, vec3, positions)
 BUFFER(writeonly, 8, vec3, normals)
 BUFFER(, 9, uvec3, body_lower)
 BUFFER(, 10, uvec3, body_upper)
-
-shared uvec3 lowers[64], uppers[64];
+#include "grow_bounds.glsl"
 
 /// The piece of this workgroup.
 uint findPiece() {
@@ -63,14 +61,15 @@ vec3 unitOr(vec3 v, vec3 otherwise) {
 }
 
 void main() {
-    const uint lane = gl_LocalInvocationIndex;
     const DeformPiece piece = pieces[findPiece()];
-    const uint vertex = (GROUP_INDEX - piece.first_group) * 64u + lane;
-    uvec3 lower = uvec3(0xffffffffu), upper = uvec3(0u);
-    if (GROUP_INDEX < params.groups && vertex < piece.vertices) {
+    const uint vertex = (GROUP_INDEX - piece.first_group) * 64u + gl_LocalInvocationIndex;
+    const bool valid = GROUP_INDEX < params.groups && vertex < piece.vertices;
+    vec3 position = vec3(0);
+    if (valid) {
         const uint rest = piece.first_rest + vertex, at = piece.first_vertex + vertex;
         const vec3 own_normal = rest_normals[rest];
-        vec3 position = rest_positions[rest], normal = own_normal;
+        vec3 normal = own_normal;
+        position = rest_positions[rest];
         morph(piece, vertex, position, normal);
         const GpuTransform to_world = transformOf(piece, vertex);
         position = to_world.linear * position + to_world.position;
@@ -80,20 +79,6 @@ void main() {
         normal = (dot(m[0], x) < 0.0 ? -1.0 : 1.0) * (x * normal.x + y * normal.y + z * normal.z);
         positions[at] = position;
         normals[at] = unitOr(normal, own_normal);
-        if (isBounded(position)) lower = upper = orderedBits(position);
     }
-    lowers[lane] = lower;
-    uppers[lane] = upper;
-    for (uint step = 32u; step > 0u; step >>= 1u) {
-        barrier();
-        if (lane < step) {
-            lowers[lane] = min(lowers[lane], lowers[lane + step]);
-            uppers[lane] = max(uppers[lane], uppers[lane + step]);
-        }
-    }
-    barrier();
-    if (lane < 3u && GROUP_INDEX < params.groups) {
-        atomicMin(body_lower[piece.body][lane], lowers[0][lane]);
-        atomicMax(body_upper[piece.body][lane], uppers[0][lane]);
-    }
+    growBounds(piece.body, position, valid);
 }

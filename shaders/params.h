@@ -185,6 +185,40 @@ struct DeformParams {
 };
 SHARED_SIZE(DeformParams, 16);
 
+// --- What is generated (src/render/generators; shaders/water_*.comp, swarm.comp) ---
+
+/// Parameters of all water_* passes: see Water of src/scene/generated.h.
+struct WaterParams {
+    uint cells;
+    float size;
+    float step;         ///< seconds
+    float stiffness;    ///< (speed / spacing)², per second squared
+    float damping;      ///< per second
+    float rest;         ///< seconds from the last step to the moment
+    uint first_vertex;
+    uint body;
+    vec2 drop_at;
+    float drop_strength;
+    float drop_width;
+    uint floats;
+};
+SHARED_SIZE(WaterParams, 52);
+
+/// Something that swims, in a moment.
+struct GpuFloat {
+    uint instance;
+    vec2 at;        ///< x, z
+    float turned;   ///< about the vertical, radians
+    float radius;
+};
+SHARED_SIZE(GpuFloat, 20);
+
+struct SwarmParams {
+    uint bodies;
+    float phase;    ///< of the swarm's period, [0, 1)
+};
+SHARED_SIZE(SwarmParams, 8);
+
 // --- Tracing (shaders/trace.comp) ---
 
 /// A ray in a queue.

@@ -165,13 +165,10 @@ void Deformer::turn_over(Commands& commands, size_t piece, const Primitive& prim
     mirrored_[piece] = mirrors;
 }
 
-void Deformer::record(Commands& commands, const Cubes& cubes, uint32_t first_body, const TriangleBuffers& triangles,
+void Deformer::record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles,
                       const Buffer& normals) const {
     if (empty()) return;
     commands.begin_group("animate");
-    const uint64_t from = first_body * 12ull, bytes = (cubes.bodies().size() - first_body) * 12ull;
-    commands.fill(cubes.body_lower, ~0u, from, bytes);
-    commands.fill(cubes.body_upper, 0, from, bytes);
     commands.run(device_.pass("deform"),
                  {{"pieces", piece_table_},
                   {"rest_positions", rest_positions_},

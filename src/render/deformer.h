@@ -18,10 +18,9 @@ class Deformer {
     /// out, or back, its triangles in `triangles` are turned over.
     void pose(Commands& commands, const Scene& scene, const Buffer& triangles);
 
-    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies
-    /// from `first_body` on.
-    void record(Commands& commands, const Cubes& cubes, uint32_t first_body, const TriangleBuffers& triangles,
-                const Buffer& normals) const;
+    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies,
+    /// whose bounds have been emptied.
+    void record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles, const Buffer& normals) const;
 
     uint64_t bytes() const;
 

@@ -70,7 +70,8 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly,
       device_(device),
       placed_(assembly.instances),
       fixed_bodies_(assembly.fixed),
-      deformer_(device, scene, assembly) {
+      deformer_(device, scene, assembly),
+      generators_(device, scene, assembly) {
     Commands commands(device);
     normals = upload(device, commands, "vertex normals", assembly.normals);
     uvs = upload(device, commands, "texture coordinates", assembly.uvs);
@@ -99,16 +100,23 @@ uint32_t GpuScene::pose(Commands& commands, const Scene& scene) {
     std::vector<GpuTransform> transforms = transforms_of(placed_, world_matrices(scene));
     uint32_t moved = 0;
     for (size_t i = 0; i < transforms_.size(); i++)
-        moved += std::memcmp(&transforms[i], &transforms_[i], sizeof transforms[i]) != 0;
+        moved += generators_.places(placed_[i].node) ||
+                 std::memcmp(&transforms[i], &transforms_[i], sizeof transforms[i]) != 0;
     if (moved > 0 || transforms_.empty()) instances.place(commands, std::span<const GpuTransform>(transforms));
     transforms_ = std::move(transforms);
     deformer_.pose(commands, scene, triangles.triangles);
+    generators_.pose(commands, scene);
     upload_lights(commands, scene);
     return moved;
 }
 
-void GpuScene::record_animation(Commands& commands, const Cubes& cubes) const {
-    deformer_.record(commands, cubes, fixed_bodies_, triangles, normals);
+void GpuScene::record_animation(Commands& commands, const Cubes& cubes) {
+    if (const uint64_t count = cubes.bodies().size() - fixed_bodies_) {
+        commands.fill(cubes.body_lower, ~0u, fixed_bodies_ * 12ull, count * 12);
+        commands.fill(cubes.body_upper, 0, fixed_bodies_ * 12ull, count * 12);
+    }
+    deformer_.record(commands, cubes, triangles, normals);
+    generators_.record(commands, cubes, triangles, normals, instances);
 }
 
 void GpuScene::upload_materials(Device& device, Commands& commands, const Scene& scene) {
@@ -137,7 +145,7 @@ void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
 }
 
 uint64_t GpuScene::bytes() const {
-    uint64_t sum = instances.bytes() + deformer_.bytes();
+    uint64_t sum = instances.bytes() + deformer_.bytes() + generators_.bytes();
     for (const Buffer* buffer :
          {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors, &triangle_materials, &triangle_ids,
           &triangle_objects, &materials, &texture_infos, &texels, &lights, &environment})

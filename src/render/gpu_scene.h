@@ -4,6 +4,7 @@
 #include "ldc/instances.h"
 #include "params.h"
 #include "render/deformer.h"
+#include "render/generators.h"
 #include "scene/assembly.h"
 #include "scene/environment.h"
 
@@ -24,11 +25,12 @@ class GpuScene {
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body
 
-    /// Takes on the moment that `scene` is in: transforms, joints, weights, lights. Returns how many instances moved.
+    /// Takes on the moment that `scene` is in: transforms, joints, weights, lights, what is generated. Returns how many
+    /// instances moved; those that are placed on the device all count.
     uint32_t pose(Commands& commands, const Scene& scene);
 
     /// Records what computes the vertices of this moment.
-    void record_animation(Commands& commands, const Cubes& cubes) const;
+    void record_animation(Commands& commands, const Cubes& cubes);
 
     uint64_t bytes() const;
 
@@ -44,6 +46,7 @@ class GpuScene {
     std::vector<GpuTransform> transforms_;  ///< as they were uploaded last
     uint32_t fixed_bodies_;
     Deformer deformer_;
+    Generators generators_;
     std::vector<GpuLight> environment_lights_;
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0;

@@ -135,6 +135,13 @@ std::vector<glm::mat4> world_matrices(const Scene& scene) {
     return worlds;
 }
 
+/// Is the animation that makes go on what is generated among these?
+static bool generates(const Scene& scene, const std::vector<const Animation*>& animations) {
+    return std::any_of(animations.begin(), animations.end(), [&](const Animation* animation) {
+        return animation - scene.animations.data() == scene.generated.animation;
+    });
+}
+
 void animate(Scene& scene, const std::string& which, double time) {
     const std::vector<const Animation*> chosen = find(scene, which);
     std::vector<Placement> placements;
@@ -149,6 +156,7 @@ void animate(Scene& scene, const std::string& which, double time) {
     }
     for (size_t i = 0; i < scene.nodes.size(); i++)
         if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
+    if (generates(scene, chosen)) scene.generated.time = time;
     carry_along(scene);
 }
 
@@ -167,13 +175,20 @@ Motion motion_of(const Scene& scene, const std::string& which) {
     const std::vector<bool> none(scene.nodes.size(), false);
     Motion motion{none, none, none};
     if (which.empty()) return motion;
-    for (const Animation* animation : find(scene, which))
+    const std::vector<const Animation*> chosen = find(scene, which);
+    for (const Animation* animation : chosen)
         for (const AnimationChannel& channel : animation->channels) {
             if (!varies(channel)) continue;
             const auto node = size_t(channel.node);
             (channel.path == Path::weights ? motion.morphs : motion.moves)[node] = true;
             if (channel.path == Path::scale) motion.scales[node] = true;
         }
+    motion.generates = generates(scene, chosen);
+    if (!motion.generates) return motion;
+    for (const Water& water : scene.generated.waters)
+        for (const Water::Float& f : water.floats) motion.moves[size_t(f.node)] = true;
+    for (const Swarm& swarm : scene.generated.swarms)
+        for (const int node : swarm.nodes) motion.moves[size_t(node)] = true;
     return motion;
 }
 

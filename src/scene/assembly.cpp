@@ -48,6 +48,7 @@ class Assembler {
   public:
     Assembler(const Scene& scene, const Motion& motion)
         : scene_(scene), motion_(motion), worlds_(world_matrices(scene)), still_(scene.nodes.size()) {
+        find_generated();
         find_anchors();
         number_triangles();
     }
@@ -69,6 +70,18 @@ class Assembler {
 
     const Mesh& mesh_of(int node) const { return scene_.meshes[size_t(scene_.nodes[size_t(node)].mesh)]; }
     const Primitive& primitive_of(const Place& place) const { return mesh_of(place.node).primitives[place.primitive]; }
+
+    /// What moves by passes of its own.
+    void find_generated() {
+        out_.generates = motion_.generates;
+        if (!motion_.generates) return;
+        for (const Swarm& swarm : scene_.generated.swarms) generated_.insert(swarm.nodes.begin(), swarm.nodes.end());
+        for (const Water& water : scene_.generated.waters) {
+            waters_.push_back(water.node);
+            for (const Water::Float& f : water.floats) generated_.insert(f.node);
+        }
+        out_.waters.resize(waters_.size());
+    }
 
     /// The nearest node above each one, itself included, that an animation moves, and how the node stands in it.
     void find_anchors() {
@@ -105,9 +118,13 @@ class Assembler {
         check_size(scene_, vertices, out_.shown);
     }
 
+    bool is_water(int node) const { return std::find(waters_.begin(), waters_.end(), node) != waters_.end(); }
+
     bool deforms(const Place& place) const {
         const Node& node = scene_.nodes[size_t(place.node)];
         const Primitive& primitive = primitive_of(place);
+        if (generated_.contains(place.node)) return false;
+        if (is_water(place.node)) return true;
         if (!primitive.targets.empty() && motion_.morphs[size_t(place.node)]) return true;
         if (!primitive.joints.empty() && node.skin >= 0) {
             const std::vector<int>& joints = scene_.skins[size_t(node.skin)].joints;
@@ -266,8 +283,12 @@ class Assembler {
         begin_body();
         const auto body = uint32_t(out_.bodies.size() - 1);
         for (const Place& place : places) {
-            out_.pieces.push_back({place.node, place.primitive, body, uint32_t(out_.positions.size()),
-                                   uint32_t(out_.triangles.size())});
+            const Assembly::Piece piece{place.node, place.primitive, body, uint32_t(out_.positions.size()),
+                                        uint32_t(out_.triangles.size())};
+            if (is_water(place.node))
+                out_.waters[size_t(std::find(waters_.begin(), waters_.end(), place.node) - waters_.begin())] = piece;
+            else
+                out_.pieces.push_back(piece);
             append(place,
                    deform(scene_, scene_.nodes[size_t(place.node)], primitive_of(place), weights_of(place.node),
                           worlds_, worlds_[size_t(place.node)]),
@@ -289,6 +310,8 @@ class Assembler {
     std::vector<std::vector<uint32_t>> first_ids_;
     std::vector<uint32_t> objects_;
     bool has_colors_ = false;
+    std::set<int> generated_;  ///< nodes that are placed by passes of their own
+    std::vector<int> waters_;  ///< nodes of Scene::generated.waters
     std::map<int, std::vector<Place>> fixed_;  ///< by anchor
     std::map<int, std::vector<int>> shared_;   ///< nodes by mesh
     std::map<std::pair<int, int>, std::vector<Place>> deforming_;

@@ -40,6 +40,8 @@ struct Assembly {
     uint32_t fixed = 0;                ///< bodies whose shape never changes
     std::vector<Instance> instances;   ///< in the order of their bodies
     std::vector<Piece> pieces;         ///< in the order of their vertices
+    bool generates = false;            ///< what is generated moves: Scene::generated
+    std::vector<Piece> waters;         ///< of Scene::generated.waters, while they move
     uint64_t shown = 0;                ///< triangles with all instances
 };
 

@@ -13,6 +13,7 @@ struct Motion {
     std::vector<bool> moves;   ///< its own translation, rotation or scale
     std::vector<bool> scales;  ///< its own scale
     std::vector<bool> morphs;  ///< its weights
+    bool generates = false;    ///< what is generated goes on (Scene::generated)
 };
 
 /// Of the animation `which` (as animate() takes it; empty: none). Throws Error for an unknown one.

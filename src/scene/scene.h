@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/generated.h"
+
 namespace peelray {
 
 /// An image of 8-bit RGBA texels, row 0 first (the glTF order: v = 0 is the first row). Colour is sRGB-encoded, alpha
@@ -156,6 +158,7 @@ struct Scene {
     std::vector<Light> lights;    ///< in world space
     std::vector<Skin> skins;
     std::vector<Animation> animations;
+    Generated generated;  ///< what is computed for every moment, if anything is
     std::vector<std::string> extensions_used;         ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
     std::vector<std::string>
