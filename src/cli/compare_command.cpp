@@ -323,9 +323,9 @@ void run_compare(const CompareArguments& a) {
         if (same > 1) given.back().name += fmt::format(" ({})", same);
     }
 
-    const PreparedScene scene = prepare_scene(a);
+    PreparedScene scene = prepare_scene(a);
     watch_interrupts();
-    PictureMaker maker(scene, a.device);
+    PictureMaker maker(scene, a);
     for (Entry& entry : entries) render(entry, maker, settings_of(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);

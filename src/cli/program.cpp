@@ -64,10 +64,10 @@ void print_note(const std::string& text) {
     fmt::print(stderr, "peelray: note: {}\n", one_line(text));
 }
 
-Geometry visible_geometry(const Scene& scene) {
+Geometry visible_geometry(const Scene& scene, bool is_moment) {
     Geometry geometry = flatten(scene);
     const size_t count = geometry.triangles.size();
-    if (geometry.zero_area == count)
+    if (geometry.zero_area == count && !is_moment)
         fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
     for (const std::string& text : scene.notes) print_note(text);
     if (geometry.zero_area > 0)

@@ -77,8 +77,9 @@ void run_trace(const TraceArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 
-/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit.
-Geometry visible_geometry(const Scene& scene);
+/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit,
+/// unless that is but one moment of an animation.
+Geometry visible_geometry(const Scene& scene, bool is_moment = false);
 /// Whatever a file's names brought along, as one line without terminal codes.
 std::string one_line(std::string text);
 /// A line on standard error that is no complaint.

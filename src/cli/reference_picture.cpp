@@ -41,4 +41,8 @@ MadePicture reference_picture(const PreparedScene& scene, const PictureSettings&
     return made;
 }
 
+std::string reference_version() {
+    return "reference, " + PathTracer::version();
+}
+
 }  // namespace peelray

@@ -89,9 +89,9 @@ void run_render(const RenderArguments& a) {
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
-    const PreparedScene scene = prepare_scene(a);
+    PreparedScene scene = prepare_scene(a);
     watch_interrupts();
-    const MadePicture made = PictureMaker(scene, a.device).make(a.tracing.tracer, settings);
+    const MadePicture made = PictureMaker(scene, a).make(a.tracing.tracer, settings);
     write_picture(made.picture, a.output);
     write_aovs(made.picture, a.aovs, a.output);
     if (!a.stats.empty()) write_json(a.stats, made.stats);

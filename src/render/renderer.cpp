@@ -140,7 +140,9 @@ void Renderer::Impl::prepare_frame() {
 
     frame = {};
     frame.grid = cube.grid;
-    describe_view(frame, make_view(settings.camera, float(settings.width) / float(settings.height), lower, upper));
+    const Box box = settings.bounds.value_or(Box{lower, upper});
+    describe_view(frame,
+                  make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = row_pixels;

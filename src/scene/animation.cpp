@@ -69,9 +69,10 @@ void carry_along(Scene& scene) {
         const Pose pose(worlds[i]);
         if (node.camera >= 0) {
             Camera& camera = scene.cameras[size_t(node.camera)];
-            const float distance = glm::length(camera.look - camera.eye);
+            // Taken once: from moment to moment it would drift by a rounding.
+            if (camera.look_distance == 0) camera.look_distance = glm::length(camera.look - camera.eye);
             camera.eye = pose.at;
-            camera.look = pose.at + pose.ahead * distance;
+            camera.look = pose.at + pose.ahead * camera.look_distance;
             camera.up = pose.up;
         }
         if (node.light >= 0) {
@@ -80,6 +81,22 @@ void carry_along(Scene& scene) {
             light.direction = pose.ahead;
         }
     }
+}
+
+void pose(Scene& scene, const std::vector<const Animation*>& animations, double time) {
+    std::vector<Placement> placements;
+    for (Node& node : scene.nodes) {
+        placements.push_back(node.rest);
+        node.weights = node.rest_weights;
+    }
+    for (const Animation* animation : animations) {
+        const double past =
+            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
+        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), scene, placements);
+    }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
+    carry_along(scene);
 }
 
 }  // namespace
@@ -124,30 +141,27 @@ std::vector<glm::mat4> world_matrices(const Scene& scene) {
     return worlds;
 }
 
-void animate(Scene& scene, const std::string& which, double time) {
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which) {
     if (scene.animations.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
-    const Animation* one = which == "all" ? nullptr : find(scene, which);
-    if (which != "all" && !one) {
-        std::string names;
-        for (size_t i = 0; i < scene.animations.size(); i++)
-            names += fmt::format("{}{}: {}", i ? ", " : "", i,
-                                 scene.animations[i].name.empty() ? "(no name)" : scene.animations[i].name);
-        fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
-    }
-    std::vector<Placement> placements;
-    for (Node& node : scene.nodes) {
-        placements.push_back(node.rest);
-        node.weights = node.rest_weights;
-    }
-    for (const Animation& animation : scene.animations) {
-        if (one && &animation != one) continue;
-        const double past =
-            animation.duration > 0 && time > animation.duration ? std::fmod(time, animation.duration) : time;
-        for (const AnimationChannel& channel : animation.channels) apply(channel, float(past), scene, placements);
-    }
-    for (size_t i = 0; i < scene.nodes.size(); i++)
-        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
-    carry_along(scene);
+    std::vector<const Animation*> found;
+    if (which == "all")
+        for (const Animation& animation : scene.animations) found.push_back(&animation);
+    else if (const Animation* one = find(scene, which))
+        found.push_back(one);
+    if (!found.empty()) return found;
+    std::string names;
+    for (size_t i = 0; i < scene.animations.size(); i++)
+        names += fmt::format("{}{}: {}", i ? ", " : "", i,
+                             scene.animations[i].name.empty() ? "(no name)" : scene.animations[i].name);
+    fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
+}
+
+void animate(Scene& scene, const std::string& which, double time) {
+    pose(scene, find_animations(scene, which), time);
+}
+
+void stand_at_rest(Scene& scene) {
+    pose(scene, {}, 0);
 }
 
 }  // namespace peelray

@@ -19,6 +19,16 @@ glm::vec2 sample_position(uint32_t index) {
     return {float(x - std::floor(x)), float(y - std::floor(y))};
 }
 
+Camera turned(const Camera& camera, double turn) {
+    Camera out = camera;
+    if (turn == 0) return out;
+    const double angle = 2 * 3.14159265358979323846 * turn, c = std::cos(angle), s = std::sin(angle);
+    const auto rotate = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
+    out.eye = glm::vec3(glm::dvec3(camera.look) + rotate(glm::dvec3(camera.eye) - glm::dvec3(camera.look)));
+    out.up = glm::vec3(rotate(camera.up));
+    return out;
+}
+
 View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {
     const glm::dvec3 eye = camera.eye, look = glm::dvec3(camera.look) - eye;
     const auto finite = [](const glm::dvec3& v) {

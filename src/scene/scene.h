@@ -94,6 +94,7 @@ struct Camera {
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
+    float look_distance = 0;        ///< of look from eye while a node carries it; 0: it was not carried yet
 };
 
 struct Light {
@@ -199,12 +200,18 @@ std::vector<BuiltinScene> builtin_scenes();
 /// impossible N.
 Scene make_builtin(std::string_view name);
 
+/// The animations that `which` stands for: a name, an index or "all". Throws Error for an unknown animation, listing
+/// those there are, and for a scene without any.
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
+
 /// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
 /// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
-/// `which`: a name, an index or "all" (of two that move the same, the later one wins). The result depends on nothing
-/// that was done to the scene before. Throws Error for an unknown animation, listing those there are, and for a scene
-/// without any.
+/// `which`: see find_animations(); of two that move the same, the later one wins. The result depends on nothing that
+/// was done to the scene before. Throws Error like find_animations().
 void animate(Scene& scene, const std::string& which, double time);
+
+/// Undoes animate().
+void stand_at_rest(Scene& scene);
 
 /// World matrices of all nodes.
 std::vector<glm::mat4> world_matrices(const Scene& scene);
