@@ -148,7 +148,8 @@ struct Animation {
 };
 
 struct Scene {
-    std::string name;  ///< "builtin:teapots" or the file's name
+    std::string name;                          ///< "builtin:teapots" or the file's name
+    std::vector<std::filesystem::path> files;  ///< all that were read for it, its own first, each once; built-in: none
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
