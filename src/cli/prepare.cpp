@@ -114,8 +114,6 @@ void check_ranges(const PictureArguments& a) {
         if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
             fail("{} must be three finite numbers", option);
     };
-    if (!a.frames.empty() || a.fps)
-        fail("several frames are not built into this version: leave --frames and --fps out, use --time");
     if (a.time && !(*a.time >= 0 && *a.time <= 1e6))
         fail("a moment of {} seconds is out of range: choose 0 to 1000000 (--time)", *a.time);
     finite(a.eye, "--eye");

@@ -38,6 +38,10 @@ const char* build_commit() {
     return PEELRAY_COMMIT;
 }
 
+const char* program_version() {
+    return PEELRAY_VERSION;
+}
+
 void TracingArguments::check() const {
     const auto later = [](const char* option, const std::string& value, const char* instead) {
         fail("{} {} is not built into this version: use {}", option, value, instead);

@@ -97,13 +97,22 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
     return json;
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
+/// For write_atomically() and the like: writes to the temporary name; `path` is for the message.
+static auto json_writer(const std::filesystem::path& path, const Json& json) {
+    return [&](const std::filesystem::path& temporary) {
         std::ofstream stream(temporary);
-        stream << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+        stream << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
         stream.close();
         if (!stream) fail("cannot write '{}': is the disk full?", path.string());
-    });
+    };
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+    write_atomically(path, json_writer(path, json));
+}
+
+bool write_json_if_absent(const std::filesystem::path& path, const Json& json) {
+    return write_if_absent(path, json_writer(path, json));
 }
 
 }  // namespace peelray

@@ -20,5 +20,7 @@ nlohmann::ordered_json ray_stats(const RayCounts& rays);
 nlohmann::ordered_json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry);
 /// Writes indented JSON, atomically. Throws Error if unwritable.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+/// The same, but leaves a file that is there alone. Returns whether it wrote.
+bool write_json_if_absent(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 
 }  // namespace peelray
