@@ -77,9 +77,13 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
 Json files_of(const RenderArguments& a, const Scene& scene) {
     Json files = Json::object();
     std::error_code error;
-    const fs::path folder = fs::weakly_canonical(fs::path(a.scene), error).parent_path();
-    for (const fs::path& file : scene.files)
-        files[fs::weakly_canonical(file, error).lexically_relative(folder).generic_string()] = content_hash(file);
+    const fs::path self(a.scene), parent = self.has_parent_path() ? self.parent_path() : fs::path(".");
+    const fs::path folder = fs::weakly_canonical(parent, error);
+    for (const fs::path& file : scene.files) {
+        // A scene that is a link goes by the link's name; what it names lies in the link's folder.
+        const fs::path name = file == self ? self.filename() : file.lexically_relative(folder);
+        files[name.generic_string()] = content_hash(file);
+    }
     if (!a.env.empty()) files["--env " + fs::path(a.env).filename().string()] = content_hash(a.env);
     return files;
 }

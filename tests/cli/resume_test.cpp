@@ -13,8 +13,8 @@ class Resume : public SequenceTest {
   protected:
     /// Eight frames that take long enough to be caught in the middle.
     Words slow(const Words& more = {}) const {
-        Words all =
-            words("f_%02d.png", {"--frames", "0:8", "--size", "96x72", "--spp", "24", "--floor", "--aov", "depth"});
+        Words all = words("f_%02d.png", {"--frames", "0:8", "--size", "96x72", "--spp", "64", "--floor", "--tracer",
+                                         "reference", "--aov", "depth"});
         all.erase(all.begin() + 4, all.begin() + 6);  // the other --size
         all.insert(all.end(), more.begin(), more.end());
         return all;
@@ -149,6 +149,21 @@ TEST_F(Resume, FramesOfUnknownOriginAreRenderedAgain) {
     remove_outputs();
     ASSERT_EQ(sequence("f%d.png", {"--tracer", "none", "--frames", "0:3", "--aov", "depth", "--floor"}).status, 0);
     EXPECT_TRUE(contents() == mixture);
+}
+
+TEST_F(Resume, WhereAPictureIsItsAuxiliaryPicturesAre) {
+    // The second frame's cannot be written: then it has no main picture either.
+    fs::create_directory(out("f1.normal.exr"));
+    const Words options = {"--tracer", "none", "--frames", "0:3", "--aov", "depth,normal"};
+    const Outcome run = sequence("f%d.png", options);
+    expect_refused_untouched(run, {"f1.normal.exr", "it is a folder"});
+    EXPECT_TRUE(fs::exists(out("f0.png")));
+    EXPECT_FALSE(fs::exists(out("f1.png")));
+    fs::remove(out("f1.normal.exr"));
+    Words resume = options;
+    resume.push_back("--resume");
+    EXPECT_EQ(sequence("f%d.png", resume).status, 0);
+    EXPECT_EQ(outputs().size(), 10u);
 }
 
 TEST_F(Resume, OldTemporariesGo) {
