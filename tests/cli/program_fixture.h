@@ -51,8 +51,10 @@ struct Running {
 };
 
 /// Starts the program with `variables` added to the environment. `name`: a different one for each at the same time.
+/// `own_group`: as a shell starts it on a terminal.
 inline Running start_program(const std::vector<std::string>& arguments, const std::filesystem::path& scratch,
-                             const std::map<std::string, std::string>& variables = {}, const std::string& name = "") {
+                             const std::map<std::string, std::string>& variables = {}, const std::string& name = "",
+                             bool own_group = false) {
     std::vector<char*> argv;
     std::string program = PEELRAY_PROGRAM;
     std::vector<std::string> copies = arguments;
@@ -62,6 +64,7 @@ inline Running start_program(const std::vector<std::string>& arguments, const st
     Running running{-1, scratch / ("stdout" + name), scratch / ("stderr" + name)};
     running.process = ::fork();
     if (running.process == 0) {
+        if (own_group) ::setpgid(0, 0);
         ::setenv("XDG_CACHE_HOME", PEELRAY_CACHE, 1);
         for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
         const int flags = O_WRONLY | O_CREAT | O_TRUNC;
@@ -88,8 +91,8 @@ class ProgramTest : public TempFolder {
         return start(arguments, variables).wait();
     }
     Running start(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& variables = {},
-                  const std::string& name = "") const {
-        return start_program(arguments, folder / "scratch", variables, name);
+                  const std::string& name = "", bool own_group = false) const {
+        return start_program(arguments, folder / "scratch", variables, name, own_group);
     }
     std::string in(const std::string& name) const { return folder / name; }
     std::string out(const std::string& name) const { return folder / "out" / name; }

@@ -155,19 +155,16 @@ TEST_F(Video, AnInterruptEndsFfmpegToo) {
 }
 
 TEST_F(Video, ACtrlCIsForUs) {
-    // A terminal sends it to all processes of the command, as `timeout` does. It must not look like an ffmpeg that
-    // fails.
-    fake("trap 'echo > $FOLDER/hit; exit 255' INT\ncat > /dev/null");
-    std::string line = "PATH='" + in("bin") +
-                       "':/usr/bin:/bin XDG_CACHE_HOME='" PEELRAY_CACHE
-                       "' timeout --preserve-status --signal=INT 1.5 '" PEELRAY_PROGRAM "'";
-    for (const std::string& word : words("v.mp4", {"--frames", "0:100000", "--tracer", "none"}))
-        line += " '" + word + "'";
-    line += " > '" + (folder / "scratch/o").string() + "' 2> '" + (folder / "scratch/e").string() + "'; test $? -eq 1";
-    EXPECT_EQ(std::system(line.c_str()), 0);
-    const std::string said = get(folder / "scratch/e");
-    EXPECT_TRUE(said.starts_with("peelray: interrupted after ")) << said;
-    EXPECT_TRUE(said.ends_with(" of 100000 frames: no video was written; run it again\n")) << said;
+    // A terminal sends it to the whole process group. It must not look like an ffmpeg that fails.
+    const auto variables = fake("trap 'echo > $FOLDER/hit; exit 255' INT\necho > $FOLDER/started\ncat > /dev/null");
+    const Running running = start(words("v.mp4", {"--frames", "0:100000", "--tracer", "none"}), variables, "", true);
+    ASSERT_TRUE(wait_for(in("started")));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    ::kill(-running.process, SIGINT);
+    const Outcome run = running.wait();
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(run.err.starts_with("peelray: interrupted after ")) << run.err;
+    EXPECT_TRUE(run.err.ends_with(" of 100000 frames: no video was written; run it again\n")) << run.err;
     EXPECT_FALSE(fs::exists(in("hit")));
     EXPECT_EQ(outputs(), Words());
 }
