@@ -33,7 +33,9 @@ std::vector<std::string> command_line(const fs::path& ffmpeg, const fs::path& fi
                                       double fps) {
     const std::string where = "file:" + file.string();  // a name with a colon is no address
     std::vector<std::string> words = {ffmpeg.string(), "-hide_banner", "-loglevel", "error", "-nostats", "-y"};
+
     const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
+    add({"-xerror"});  // without it a full disk leaves half a .webm and exit status 0
     add({"-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", size.x, size.y), "-framerate",
          fmt::format("{}", fps), "-i", "pipe:0", "-an"});
     // Players take HD video for BT.709; without these ffmpeg converts by BT.601, and colours shift.
@@ -112,14 +114,14 @@ void VideoWriter::start(const fs::path& ffmpeg, const fs::path& file, double fps
     posix_spawn_file_actions_adddup2(&actions, theirs.number, 0);
     posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, messages.number, 2);
-    // In a process group of its own, so that a Ctrl-C reaches us alone, who then end it; and without the signals that
-    // we ignore.
+    // In a process group of its own, so that a Ctrl-C reaches us alone, who then end it; and with SIGPIPE as it finds
+    // it elsewhere. (SIGXFSZ it inherits ignored: then it can say that a file is too large.)
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t defaults, none;
     sigemptyset(&none);
     sigemptyset(&defaults);
-    for (const int number : {SIGPIPE, SIGXFSZ}) sigaddset(&defaults, number);
+    sigaddset(&defaults, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &defaults);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setpgroup(&attributes, 0);

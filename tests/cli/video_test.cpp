@@ -51,6 +51,7 @@ TEST_F(Video, FfmpegGetsTheFramesAndTheSettings) {
         const auto expect_pair = [&](const std::string& option, const std::string& value) {
             EXPECT_NE(arguments.find("\n" + option + "\n" + value + "\n"), std::string::npos) << arguments << option;
         };
+        EXPECT_NE(arguments.find("\n-xerror\n"), std::string::npos) << arguments;
         expect_pair("-f", "rawvideo");
         expect_pair("-pix_fmt", "rgb24");
         expect_pair("-video_size", "64x48");
@@ -193,6 +194,17 @@ TEST_F(Video, TheRealFfmpegMakesThem) {
         ASSERT_EQ(rgb.size(), 64u * 48 * 3);
         const int want[] = {188, 89, 231};
         for (size_t c = 0; c < 3; c++) EXPECT_NEAR(int(uint8_t(rgb[(24 * 64 + 32) * 3 + c])), want[c], 3) << c;
+    }
+}
+
+TEST_F(Video, TheRealFfmpegOnAFullDisk) {
+    if (!has_ffmpeg()) GTEST_SKIP() << "there is no ffmpeg: apt-get install ffmpeg";
+    // As good as full: files may have no more than 512 bytes. Left to itself ffmpeg says of a .webm that all is well.
+    const auto variables = fake("ulimit -f 1\nPATH=/usr/bin:/bin exec ffmpeg \"$@\"");
+    for (const std::string name : {"v.mp4", "v.webm"}) {
+        const Outcome run = sequence(name, {"--frames", "0:3", "--tracer", "none"}, "moving.gltf", variables);
+        expect_refused(run, 1, "ffmpeg failed (exit status 1)");
+        EXPECT_NE(run.err.find("File too large"), std::string::npos) << run.err;
     }
 }
 
