@@ -203,7 +203,7 @@ Json json_of(const CompareArguments& a, const Report& report, const std::vector<
                  {"command", report.command},
                  {"commit", build_commit()},
                  {"image", {a.size.x, a.size.y}},
-                 {"triangles", scene.geometry.triangles.size()},
+                 {"triangles", scene.triangles},
                  {"reference", entries[report.reference].name},
                  {"notes", report.notes}};
     for (size_t i = 0; i < entries.size(); i++) {
@@ -265,11 +265,11 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
     report.title = a.scene;
     report.command = compare_command(a);
     report.reference = choose_reference(entries);
-    report.facts = {{"triangles", fmt::format("{}", scene.geometry.triangles.size())},
+    report.facts = {{"triangles", fmt::format("{}", scene.triangles)},
                     {"picture", fmt::format("{} × {}, {} sample{} per pixel, {} bounces", a.size.x, a.size.y, a.spp,
                                             a.spp == 1 ? "" : "s", a.bounces)},
                     {"program", fmt::format("peelray {}", build_commit())}};
-    if (!is_reflective(scene.scene, scene.geometry, a.spp))
+    if (!is_reflective(scene.scene, a.spp))
         report.notes.push_back(
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
     const Entry& reference = entries[report.reference];
@@ -324,9 +324,9 @@ void run_compare(const CompareArguments& a) {
         if (same > 1) given.back().name += fmt::format(" ({})", same);
     }
 
-    const PreparedScene scene = prepare_scene(a);
+    PreparedScene scene = prepare_scene(a);
     watch_interrupts();
-    PictureMaker maker(scene, a.device);
+    PictureMaker maker(scene, a);
     for (Entry& entry : entries) render(entry, maker, settings_of(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);

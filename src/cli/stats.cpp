@@ -35,7 +35,7 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
 }
 
 Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
-                const Bounds& box, HitTest hit) {
+                const Box& box, HitTest hit) {
     Json json = {{"n", cubes.resolution},
                  {"box", box_stats(box.lower, box.upper)},
                  {"builder", "compute"},
@@ -80,7 +80,7 @@ static Json map_stats(const RenderStats& stats) {
               {"bytes", m.shadows.bytes}}}};
 }
 
-Json render_stats(const Device& device, const RenderResult& result, uint64_t triangles, const Bounds& box) {
+Json render_stats(const Device& device, const RenderResult& result, uint64_t triangles, const Box& box) {
     const RenderStats& s = result.stats;
     Json json = {{"tracer", s.tracer == Tracer::ldc ? "ldc" : s.tracer == Tracer::cubemap ? "cubemap" : "none"}};
     json.update(device_stats(device));
@@ -117,13 +117,22 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     return json;
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
+/// For write_atomically() and the like: writes to the temporary name; `path` is for the message.
+static auto json_writer(const std::filesystem::path& path, const Json& json) {
+    return [&](const std::filesystem::path& temporary) {
         std::ofstream stream(temporary);
-        stream << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+        stream << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
         stream.close();
         if (!stream) fail("cannot write '{}': is the disk full?", path.string());
-    });
+    };
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+    write_atomically(path, json_writer(path, json));
+}
+
+bool write_json_if_absent(const std::filesystem::path& path, const Json& json) {
+    return write_if_absent(path, json_writer(path, json));
 }
 
 }  // namespace peelray

@@ -14,13 +14,15 @@ nlohmann::ordered_json device_stats(const Device& device);
 /// The cubes: N (the largest), box, samples, layers, bytes, builder, and each one's own (the first 64). `bodies`: with the
 /// cubes' grids; `shown`: instances of each; `box`: of the whole scene.
 nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
-                                  const std::vector<uint32_t>& shown, const Bounds& box, HitTest hit);
+                                  const std::vector<uint32_t>& shown, const Box& box, HitTest hit);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.
 nlohmann::ordered_json render_stats(const Device& device, const RenderResult& result, uint64_t triangles,
-                                    const Bounds& box);
+                                    const Box& box);
 /// Writes indented JSON, atomically. Throws Error if unwritable.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+/// The same, but leaves a file that is there alone. Returns whether it wrote.
+bool write_json_if_absent(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 
 }  // namespace peelray

@@ -82,7 +82,8 @@ void run_trace(const TraceArguments& a) {
     check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
     const Scene scene = load_scene(a.scene);
-    const Geometry geometry = visible_geometry(scene);
+    const Geometry geometry = flatten(scene);
+    check_visible(geometry, scene);
 
     RenderSettings settings;
     settings.ldc = a.tracing.ldc.value_or(0);

@@ -22,12 +22,9 @@ uint32_t level_offset(uint32_t face, uint32_t level) {
 
 }  // namespace
 
-CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry,
-                   const Bounds& bounds)
+CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry)
     : device_(device),
       scene_(scene),
-      lower_(bounds.lower),
-      upper_(bounds.upper),
       objects_(source, geometry),
       shadows_(device),
       target_(device) {}
@@ -108,9 +105,9 @@ void CubeMaps::upload_frames(Commands& commands, const Frame& picture) {
     commands.upload(frames_, std::span<const Frame>(frames));
 }
 
-void CubeMaps::prepare(Commands& commands, const PictureSettings& settings, const Frame& picture) {
+void CubeMaps::prepare(Commands& commands, const PictureSettings& settings, const Frame& picture, const Box& box) {
     objects_.upload(device_, commands);
-    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), lower_, upper_, picture);
+    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), box.lower, box.upper, picture);
     choose_probes(settings);
     for (uint32_t i = 0; i < std::max(rounds_, 1u); i++)
         ensure_size(device_, texels_[i], "probes", texel_count_ * kTexelBytes);

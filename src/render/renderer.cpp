@@ -53,7 +53,6 @@ CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settin
 struct Renderer::Impl {
     Device& device;
     const Assembly assembly;
-    const Bounds bounds;
     const Scene* moment;  ///< the scene as it is now
     GpuScene scene;
     std::unique_ptr<SceneCubes> cubes;
@@ -66,6 +65,7 @@ struct Renderer::Impl {
     RenderSettings settings;
     HitTest hit = HitTest::exact;
     Frame frame{};
+    Box box;  ///< what the settings say, else that of the moment
     uint32_t last_level = 0, band_rows = 0;
     RayCounts rays;
     uint32_t redone = 0, rebuilt = 0, moved = 0;
@@ -73,11 +73,9 @@ struct Renderer::Impl {
     TimeTable times;
     double frame_ms = 0;
 
-    Impl(Device& device, const Scene& source, const Assembly& assembly, const Bounds& bounds,
-         const Environment& environment)
+    Impl(Device& device, const Scene& source, const Assembly& assembly, const Environment& environment)
         : device(device),
           assembly(without_geometry(assembly)),
-          bounds(bounds),
           moment(&source),
           scene(device, source, assembly, environment),
           queues(device),
@@ -150,12 +148,12 @@ void Renderer::Impl::prepare_cubes() {
 
 void Renderer::Impl::prepare_maps() {
     if (!maps) {
-        maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment), bounds);
+        maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment));
     } else if (maps_moved) {
         maps->move(flatten(*moment));
     }
     maps_moved = false;
-    maps->prepare(commands, settings, frame);
+    maps->prepare(commands, settings, frame, box);
 }
 
 void Renderer::Impl::prepare_frame() {
@@ -169,8 +167,9 @@ void Renderer::Impl::prepare_frame() {
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
 
     frame = {};
-    describe_view(frame, make_view(settings.camera, float(settings.width) / float(settings.height), bounds.lower,
-                                   bounds.upper));
+    box = settings.bounds ? *settings.bounds : bounds(*moment);
+    describe_view(frame,
+                  make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = row_pixels;
@@ -383,9 +382,8 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     }
 }
 
-Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Bounds& bounds,
-                   const Environment& environment)
-    : impl_(std::make_unique<Impl>(device, scene, assembly, bounds, environment)) {}
+Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment)
+    : impl_(std::make_unique<Impl>(device, scene, assembly, environment)) {}
 
 Renderer::~Renderer() = default;
 

@@ -61,10 +61,8 @@ CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settin
 /// Renders pictures of one scene, in the moments it is put into; keeps its buffers and cubes from picture to picture.
 class Renderer {
   public:
-    /// `assembly`: of this scene. `bounds`: all that the pictures will show lies in them. The scene's moment is that of
-    /// the first pose.
-    Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Bounds& bounds,
-             const Environment& environment);
+    /// `assembly`: of this scene. The moment is that which the scene is in.
+    Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
     ~Renderer();
 
     /// Takes on the moment that the same scene is in now; `scene` must not be changed before the next call.

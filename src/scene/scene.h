@@ -96,6 +96,7 @@ struct Camera {
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
+    float look_distance = 0;        ///< of look from eye while a node carries it; 0: it was not carried yet
 };
 
 struct Light {
@@ -149,7 +150,8 @@ struct Animation {
 };
 
 struct Scene {
-    std::string name;  ///< "builtin:teapots" or the file's name
+    std::string name;                          ///< "builtin:teapots" or the file's name
+    std::vector<std::filesystem::path> files;  ///< all that were read for it, its own first, each once; built-in: none
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
@@ -186,11 +188,6 @@ struct Geometry {
     uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
 };
 
-/// A box; lower > upper: empty.
-struct Bounds {
-    glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
-};
-
 /// Reads a scene: "builtin:NAME" or a file (.gltf, .glb; .obj, .ply, .stl, .off through Assimp).
 /// Throws Error (one line: what, where, what to do) for a file that is missing, empty, truncated, without triangles,
 /// with indices or accessors out of range, with NaN or infinite vertices, or that requires an unknown extension. A glTF
@@ -207,12 +204,18 @@ std::vector<BuiltinScene> builtin_scenes();
 /// impossible N.
 Scene make_builtin(std::string_view name);
 
+/// The animations that `which` stands for: a name, an index or "all". Throws Error for an unknown animation, listing
+/// those there are, and for a scene without any.
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
+
 /// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
 /// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
-/// `which`: a name, an index or "all" (of two that move the same, the later one wins). The result depends on nothing
-/// that was done to the scene before. Throws Error for an unknown animation, listing those there are, and for a scene
-/// without any.
+/// `which`: see find_animations(); of two that move the same, the later one wins. The result depends on nothing that
+/// was done to the scene before. Throws Error like find_animations().
 void animate(Scene& scene, const std::string& which, double time);
+
+/// Undoes animate().
+void stand_at_rest(Scene& scene);
 
 /// World matrices of all nodes.
 std::vector<glm::mat4> world_matrices(const Scene& scene);

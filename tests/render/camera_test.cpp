@@ -141,6 +141,19 @@ TEST_F(CameraTest, InsideAClosedRoomEveryPixelHits) {
     }
 }
 
+TEST_F(CameraTest, TheBoundsDecideHowFarAViewReaches) {
+    // A wall fifty metres behind a small square: in sight, unless the scene is said to be no larger than the square.
+    Stage stage;
+    stage.add(parallelogram({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}), unlit({1, 0, 0}));
+    stage.add(parallelogram({-5, -5, -50}, {10, 0, 0}, {0, 10, 0}), unlit({0, 1, 0}));
+    RenderSettings settings = settings_for(orthographic({0, 0, 3}, {0, 0, 0}, 4), 16);
+    EXPECT_EQ(render(stage, white, settings).radiance.front(), glm::vec4(0, 1, 0, 1));
+    settings.bounds = Box{{-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}};
+    const RenderResult result = render(stage, white, settings);
+    EXPECT_EQ(result.radiance.front(), glm::vec4(1, 1, 1, 0));
+    EXPECT_EQ(result.radiance[8 * 16 + 8], glm::vec4(1, 0, 0, 1));
+}
+
 TEST_F(CameraTest, NothingInViewIsTheEnvironment) {
     const Camera camera = perspective({0, 5, 20}, {0, 5, 40}, 60);
     const RenderResult picture =

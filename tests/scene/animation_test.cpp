@@ -129,6 +129,26 @@ TEST(Skin, BendsAStrip) {
     }
 }
 
+TEST(Animate, CarriesACameraWithoutDrift) {
+    Scene scene = strip(), fresh = strip();
+    for (Scene* each : {&scene, &fresh}) {
+        Camera camera;
+        camera.eye = {0, 1, 0};
+        camera.look = {0, 1, -3.3333333f};
+        each->cameras.push_back(camera);
+        each->nodes[2].camera = 0;
+    }
+    for (int i = 0; i < 200; i++) animate(scene, "all", 0.013 * i);
+    animate(scene, "all", 0.7);
+    animate(fresh, "all", 0.7);
+    EXPECT_EQ(scene.cameras[0].look, fresh.cameras[0].look);
+    EXPECT_EQ(scene.cameras[0].eye, fresh.cameras[0].eye);
+    EXPECT_NEAR(glm::length(scene.cameras[0].look - scene.cameras[0].eye), 3.3333333f, 1e-5f);
+    stand_at_rest(scene);
+    EXPECT_LT(glm::length(scene.cameras[0].look - glm::vec3(0, 1, -3.3333333f)), 1e-5f);
+    EXPECT_EQ(flatten(scene).positions, flatten(strip()).positions);
+}
+
 TEST(Animate, ForgetsWhatWasBefore) {
     Scene scene = strip(), fresh = strip();
     animate(scene, "move", 1);
