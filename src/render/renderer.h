@@ -21,7 +21,7 @@ enum class Tracer : uint8_t {
 
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings {
-    uint32_t ldc = 0;      ///< voxels along each cube's longest side, 16 to 2048; 0: chosen by the number of triangles
+    uint32_t ldc = 0;      ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
     bool rebuild = false;  ///< for measuring: every cube anew in every frame, as if everything changed its shape
     bool hit_auto = true;  ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;

@@ -6,9 +6,12 @@
 namespace peelray {
 namespace {
 
-/// A small body's voxels are at most this much finer than those of the largest: beyond it they cost memory and bring
-/// nothing.
-constexpr float kFinest = 4;
+/// `auto` of planar hits, which are as good as their voxels are fine.
+constexpr float kPlanarResolution = 1024;
+/// Share of the resolution that every body gets, however small it is beside the largest; of more bodies than a few only as
+/// much that its voxels are at most so many times as fine.
+constexpr float kLeast = 0.25f, kFinest = 4;
+constexpr size_t kFewBodies = 16;
 
 float longest_side(const Assembly::Body& body) {
     const glm::vec3 size = body.upper - body.lower;
@@ -48,19 +51,17 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
 }  // namespace
 
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice) {
-    float largest = 0;
+    float largest = 1e-30f;
     for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
+    const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
+    const float n = choice.ldc == 0 ? kPlanarResolution : float(choice.ldc);
     std::vector<uint32_t> resolutions;
     for (const Assembly::Body& body : assembly.bodies) {
-        const float share = longest_side(body) / std::max(largest, 1e-30f);
-        uint32_t resolution = choice.ldc;
-        if (resolution == 0)
-            resolution = choice.hit == HitTest::exact ? serving_resolution(body.triangles)
-                                                      : std::max(512u, in_sixteens(share * 1024));
-        // What is asked for by number is for those who want just that, unless there are very many.
-        if (choice.hit == HitTest::planar ? choice.ldc == 0 : assembly.bodies.size() > 16)
-            resolution = std::min(resolution, in_sixteens(kFinest * float(resolution) * share));
-        resolutions.push_back(resolution);
+        const float share = longest_side(body) / largest;
+        // Of very many small bodies each would get more than it can use.
+        const float least = assembly.bodies.size() > kFewBodies ? std::min(kLeast, kFinest * share) : kLeast;
+        resolutions.push_back(by_triangles ? serving_resolution(body.triangles)
+                                           : in_sixteens(n * std::max(share, least)));
     }
     return resolutions;
 }

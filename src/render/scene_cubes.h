@@ -11,13 +11,14 @@ namespace peelray {
 
 /// How cubes are to be: what the settings say, with what `auto` stands for filled in.
 struct CubeChoice {
-    uint32_t ldc = 0;  ///< voxels along the longest side of every cube; 0: chosen for each body
+    uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
     HitTest hit = HitTest::exact;
     bool rebuild = false;  ///< every cube anew for every frame, as if everything deformed
     bool operator==(const CubeChoice&) const = default;
 };
 
-/// Voxels along the longest side of the cube of each body.
+/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but at
+/// least a quarter of it.
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice);
 
 class SceneCubes {

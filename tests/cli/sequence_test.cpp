@@ -240,10 +240,10 @@ std::string on_a_terminal(const Words& arguments) {
 }
 
 TEST_F(SequenceTest, ATerminalShowsHowFarItGot) {
-    const Words arguments = words("f%d.png", {"--frames", "0:9", "--floor"});
+    const Words arguments = words("f%d.png", {"--frames", "0:60", "--floor", "--spp", "4"});
     const std::string text = on_a_terminal(arguments);
     EXPECT_NE(text.find("rendering ["), std::string::npos) << text;
-    EXPECT_NE(text.find("/9 frames, "), std::string::npos) << text;
+    EXPECT_NE(text.find("/60 frames, "), std::string::npos) << text;
     EXPECT_NE(text.find(" frames/s, "), std::string::npos) << text;
     EXPECT_NE(text.find(" s left"), std::string::npos) << text;
     EXPECT_TRUE(text.ends_with("\r\033[K")) << text;

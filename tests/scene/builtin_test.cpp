@@ -52,7 +52,7 @@ TEST(Builtin, AllAreSound) {
 }
 
 TEST(Builtin, ListNamesWhatCanBeMade) {
-    ASSERT_EQ(builtin_scenes().size(), 4u);
+    ASSERT_EQ(builtin_scenes().size(), 6u);
     for (const BuiltinScene& scene : builtin_scenes()) {
         EXPECT_FALSE(scene.description.empty());
         if (scene.name == "blob:N") continue;
