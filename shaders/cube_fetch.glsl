@@ -1,18 +1,19 @@
-// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 8.
+// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9.
 #ifndef CUBE_FIRST_BINDING
 #define CUBE_FIRST_BINDING 0
 #endif
-BUFFER(readonly, CUBE_FIRST_BINDING + 0, uvec2, top_table)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 0, uvec2, top_table)
 BUFFER(readonly, CUBE_FIRST_BINDING + 1, uint, node_table)
 BUFFER(readonly, CUBE_FIRST_BINDING + 2, uint, voxel_table)
-BUFFER(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
 BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
 BUFFER(readonly, CUBE_FIRST_BINDING + 5, vec3, positions)
 BUFFER(readonly, CUBE_FIRST_BINDING + 6, uvec3, triangles)
 BUFFER(readonly, CUBE_FIRST_BINDING + 7, GpuInstance, instances)
-BUFFER(readonly, CUBE_FIRST_BINDING + 8, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 8, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 9, PeelrayInstance, instance_cubes)
 
-#define PEELRAY_INSTANCE(i) instances[i].cube
+#define PEELRAY_INSTANCE(i) instance_cubes[i]
 #define PEELRAY_BOX(i) instance_boxes[i]
 #define PEELRAY_TOP(i) top_table[i]
 #define PEELRAY_NODE(i) node_table[i]

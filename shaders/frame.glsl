@@ -73,7 +73,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
     vec3 reach = max(abs(a), max(abs(b), abs(c)));
     float turned = 1.0;
-    if (instances[instance].cube.moved != 0u) {
+    if (instances[instance].moved != 0u) {
         const GpuTransform to_world = instances[instance].to_world;
         const mat3 m = to_world.linear;
         reach = mat3(abs(m[0]), abs(m[1]), abs(m[2])) * reach + abs(to_world.position);

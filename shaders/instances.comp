@@ -14,6 +14,7 @@ BUFFER(readonly, 3, uvec3, body_lower)
 BUFFER(readonly, 4, uvec3, body_upper)
 BUFFER(writeonly, 5, GpuInstance, instances)
 BUFFER(writeonly, 6, PeelrayBox, instance_boxes)
+BUFFER(writeonly, 7, PeelrayInstance, instance_cubes)
 
 /// a*b - c*d with one rounding's error.
 float difference(float a, float b, float c, float d) {
@@ -53,14 +54,23 @@ void main() {
     const vec3 u = x / size, v = y / size, w = z / size;
     const vec3 row_u = crossProduct(v, w), row_v = crossProduct(w, u), row_w = crossProduct(u, v);
     const float determinant = dot(u, row_u), inverse = 1.0 / (determinant * size);
+    PeelrayInstance cube;
+    cube.x = row_u * inverse;
+    cube.y = row_v * inverse;
+    cube.z = row_w * inverse;
+    cube.voxel = grid.voxel;
+    cube.inv_voxel = grid.inv_voxel;
+    const uvec3 tops = grid.dims >> 4u;
+    cube.tops = tops.x | tops.y << 10u | tops.z << 20u;
+    cube.corner = to_world.linear * grid.origin + to_world.position;
+    cube.first_top = bodies[info.body].first_top;
+    cube.origin = grid.origin;
+    cube.moved = to_world.linear == mat3(1) && to_world.position == vec3(0) ? 0u : 1u;
+    instance_cubes[i] = cube;
     GpuInstance instance;
-    instance.cube.to_cube = transpose(mat3(row_u * inverse, row_v * inverse, row_w * inverse));
-    instance.cube.corner = to_world.linear * grid.origin + to_world.position;
-    instance.cube.grid = grid;
-    instance.cube.first_top = bodies[info.body].first_top;
-    instance.cube.moved = to_world.linear == mat3(1) && to_world.position == vec3(0) ? 0u : 1u;
     instance.to_world = to_world;
     instance.info = info;
+    instance.moved = cube.moved;
     instance.mirrored = determinant < 0.0 ? 1u : 0u;
     instance.voxel = grid.voxel * size;
     instances[i] = instance;

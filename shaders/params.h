@@ -119,13 +119,13 @@ SHARED_SIZE(InstanceInfo, 12);
 
 /// A body placed in the world.
 struct GpuInstance {
-    PeelrayInstance cube;
     GpuTransform to_world;
     InstanceInfo info;
+    uint moved;     ///< 0: to_world is the identity
     uint mirrored;  ///< 1: the transform turns triangles inside out
     float voxel;    ///< edge of a voxel in the world (the largest, where the transform is not even)
 };
-SHARED_SIZE(GpuInstance, 156);
+SHARED_SIZE(GpuInstance, 72);
 
 struct InstanceParams {
     uint count;

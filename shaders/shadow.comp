@@ -7,14 +7,14 @@ layout(constant_id = 0) const bool planar = false;
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
-#define SCENE_FIRST_BINDING 9
+#define SCENE_FIRST_BINDING 10
 #include "scene_buffers.glsl"
-BUFFER(readonly, 18, Ray, rays)
-BUFFER(readonly, 19, RayState, states)
-BUFFER(readonly, 20, Hit, hits)
-BUFFER(, 21, PathNode, nodes)
-BUFFER(, 22, uint, queue)
-BUFFER(readonly, 23, GpuLight, lights)
+BUFFER(readonly, 19, Ray, rays)
+BUFFER(readonly, 20, RayState, states)
+BUFFER(readonly, 21, Hit, hits)
+BUFFER(, 22, PathNode, nodes)
+BUFFER(, 23, uint, queue)
+BUFFER(readonly, 24, GpuLight, lights)
 #include "peelray/peelray.glsl"
 #include "frame.glsl"
 #include "lighting.glsl"

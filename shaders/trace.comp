@@ -8,10 +8,10 @@ layout(constant_id = 1) const bool planar = false;
 layout(constant_id = 2) const bool precise_edges = false;
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
-BUFFER(readonly, 9, Ray, rays)
-BUFFER(readonly, 10, SurfaceId, skip)
-BUFFER(readonly, 11, uint, queue)
-BUFFER(writeonly, 12, Hit, hits)
+BUFFER(readonly, 10, Ray, rays)
+BUFFER(readonly, 11, SurfaceId, skip)
+BUFFER(readonly, 12, uint, queue)
+BUFFER(writeonly, 13, Hit, hits)
 #define PEELRAY_PRECISE precise_edges
 #include "peelray/peelray.glsl"
 

@@ -6,7 +6,7 @@
 #include "tree.glsl"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)
-BUFFER(readonly, 0, PeelrayBox, unsorted_boxes)
+BUFFER_ALIGNED(readonly, 0, PeelrayBox, unsorted_boxes)
 BUFFER(readonly, 1, uvec3, middles)
 BUFFER(writeonly, 2, TreeKey, tree_keys)
 BUFFER(, 3, uvec2, sums)

@@ -5,11 +5,11 @@
 #include "tree.glsl"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)
-BUFFER(readonly, 0, PeelrayBox, unsorted_boxes)
+BUFFER_ALIGNED(readonly, 0, PeelrayBox, unsorted_boxes)
 BUFFER(readonly, 1, TreeKey, tree_keys)
 BUFFER(readonly, 2, uvec2, sums)
 BUFFER(readonly, 3, uint, unsorted_instances)
-BUFFER(writeonly, 4, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(writeonly, 4, PeelrayBox, instance_boxes)
 
 /// A bucket that holds more is left in the order in which the atomics ran: counting would take too long, and the order
 /// decides nothing but which of two coincident surfaces of two instances is seen.

@@ -5,7 +5,7 @@
 #include "tree.glsl"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)
-BUFFER(, 0, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(, 0, PeelrayBox, instance_boxes)
 
 void main() {
     const uint i = GLOBAL_INDEX;

@@ -6,7 +6,7 @@
 #include "tree.glsl"
 layout(local_size_x = 256) in;
 PARAMS(TreeParams)
-BUFFER(readonly, 0, PeelrayBox, unsorted_boxes)
+BUFFER_ALIGNED(readonly, 0, PeelrayBox, unsorted_boxes)
 BUFFER(, 1, uvec3, middles)  // lower, upper; as orderedBits
 
 shared uvec3 lowers[256], uppers[256];

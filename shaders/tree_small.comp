@@ -5,8 +5,8 @@
 #include "tree.glsl"
 layout(local_size_x = 256) in;
 PARAMS(TreeParams)
-BUFFER(readonly, 0, PeelrayBox, unsorted_boxes)
-BUFFER(coherent, 1, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(readonly, 0, PeelrayBox, unsorted_boxes)
+BUFFER_ALIGNED(coherent, 1, PeelrayBox, instance_boxes)
 
 shared vec3 lowers[256], uppers[256];
 shared uint keys[TREE_SMALL];

@@ -19,14 +19,19 @@ struct CubeGrid {
     float inv_voxel;  ///< 1 / voxel
 };
 
-/// A cube placed in the world: p in the world is to_cube * (p - corner) from the lower corner of the cube's first voxel, in
-/// the units of the body's space.
+/// A cube placed in the world: p in the world is M * (p - corner) from the lower corner of the cube's first voxel, in the units
+/// of the body's space; x, y and z are the rows of M. In blocks of 16 bytes, which GPUs load at once.
 struct PeelrayInstance {
-    mat3 to_cube;
+    vec3 x;
+    float voxel;      ///< as in CubeGrid
+    vec3 y;
+    float inv_voxel;
+    vec3 z;
+    uint tops;        ///< the grid's dims in 16 voxels: 10 bits each
     vec3 corner;
-    CubeGrid grid;
-    uint first_top;  ///< the cube's first entry in the table of 16x16x16-voxel cells
-    uint moved;      ///< 0: to_cube is the identity and corner the grid's origin
+    uint first_top;   ///< the cube's first entry in the table of 16x16x16-voxel cells
+    vec3 origin;      ///< as in CubeGrid
+    uint moved;       ///< 0: M is the identity and corner the grid's origin
 };
 
 /// A box of the hierarchy over the instances, in the world; lower > upper: nothing.
@@ -48,7 +53,7 @@ struct PeelrayTree {
 
 #ifdef __cplusplus
 static_assert(sizeof(CubeGrid) == 32);
-static_assert(sizeof(PeelrayInstance) == 88);
+static_assert(sizeof(PeelrayInstance) == 80);
 static_assert(sizeof(PeelrayBox) == 32);
 static_assert(sizeof(PeelrayTree) == 40);
 }  // namespace peelray

@@ -66,22 +66,25 @@ vec3 peelrayInverse(vec3 d) {
                             abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
 }
 
+vec3 peelrayTurn(PeelrayInstance place, vec3 v) { return vec3(dot(place.x, v), dot(place.y, v), dot(place.z, v)); }
+
 /// Nearest hit of a ray in one instance's cube with tmin < t < hit.t replaces `hit`; `any_hit`: some hit. The ray is valid
 /// (peelrayTrace), `skip` a triangle that does not count.
 void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bool planar, inout PeelrayHit hit) {
     const PeelrayInstance place = PEELRAY_INSTANCE(instance);
-    const CubeGrid grid = place.grid;
+    const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
+    const ivec3 last = ivec3(tops) * 16 - 1;
     // Voxel space: position o + s * d, where d is the ray's direction there times a power of two (exact), largest component
     // about 1, and s = t * s_per_t.
-    const vec3 turned = place.to_cube * ray.direction, turned_abs = abs(turned);
+    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
     const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
     const vec3 d = turned * scale;
-    const float s_per_t = grid.inv_voxel / scale;
-    const vec3 inv = peelrayInverse(d), size = vec3(grid.dims);
+    const float s_per_t = place.inv_voxel / scale;
+    const vec3 inv = peelrayInverse(d), size = vec3(tops) * 16.0;
 
     // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
-    vec3 start = place.to_cube * (ray.origin - place.corner);
-    vec3 o = start * grid.inv_voxel;
+    vec3 start = peelrayTurn(place, ray.origin - place.corner);
+    vec3 o = start * place.inv_voxel;
     vec2 inside = peelrayClip(o, inv, size);
     float s_shift = 0.0;
     if (inside.x > 0.0 || inside.y < 0.0) {
@@ -90,10 +93,10 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
         if (!(inside.x <= inside.y + rounding)) return;
         const float along = (inside.x - rounding) / s_per_t;
         s_shift = along * s_per_t;
-        start = place.to_cube * vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
-                                     peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
-                                     peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z));
-        o = start * grid.inv_voxel;
+        start = peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
+                                        peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
+                                        peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
+        o = start * place.inv_voxel;
         inside = peelrayClip(o, inv, size);
     }
     const float s_min = ray.tmin * s_per_t - s_shift;
@@ -103,8 +106,6 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
 
     const bvec3 up = greaterThanEqual(d, vec3(0));
     const vec3 o_inv = o * inv;
-    const ivec3 last = ivec3(grid.dims) - 1;
-    const uvec3 tops = grid.dims >> 4u;
     float s = s_begin, s_out = s_begin;
     ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last), lo = cell, hi = cell;
     vec3 exits = vec3(0);
@@ -193,16 +194,16 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
                 PEELRAY_TRIANGLE(id, a, b, c);
                 float t;
                 vec2 uv;
-                uint found = peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv);
-                float s_hit = t * grid.inv_voxel;
+                uint found = peelrayIntersect(start, d, a - place.origin, b - place.origin, c - place.origin, t, uv);
+                float s_hit = t * place.inv_voxel;
 #ifdef PEELRAY_PRECISE
                 if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
-                    const vec2 x = peelrayTwoSum(start.x, grid.origin.x), y = peelrayTwoSum(start.y, grid.origin.y),
-                               z = peelrayTwoSum(start.z, grid.origin.z);
+                    const vec2 x = peelrayTwoSum(start.x, place.origin.x), y = peelrayTwoSum(start.y, place.origin.y),
+                               z = peelrayTwoSum(start.z, place.origin.z);
                     const bool as_given = s_shift == 0.0 && place.moved == 0u;
                     found = peelrayIntersectPrecise(as_given ? ray.origin : vec3(x.x, y.x, z.x), as_given ? vec3(0) : vec3(x.y, y.y, z.y), d,
                                                     a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
-                    s_hit = t * grid.inv_voxel;
+                    s_hit = t * place.inv_voxel;
                 }
 #endif
                 if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {

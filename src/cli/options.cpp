@@ -175,6 +175,9 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
                          "for measuring: 2 or more frames after a first one that warms up; times are medians")
         ->default_str("1")
         ->group("More output");
+    app.add_flag("--rebuild", a.rebuild,
+                 "for measuring: every cube anew in every frame, as if everything changed its shape")
+        ->group("More output");
     add_device_options(app, a.device);
 }
 

@@ -150,6 +150,7 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.bounces = a.bounces;
     settings.spp = a.spp;
     settings.repeat = a.repeat;
+    settings.rebuild = a.rebuild;
     settings.exposure = a.exposure;
     settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
     settings.reflection = has("reflection");

@@ -39,7 +39,7 @@ struct PictureArguments {
     std::string camera, env;
     std::optional<glm::vec3> eye, look, up, background;
     std::optional<float> fov;  ///< degrees
-    bool sky = false, floor = false;
+    bool sky = false, floor = false, rebuild = false;
     std::string material, tonemap = "neutral";
     std::vector<std::string> effects = {"reflection", "refraction", "shadow"};
     float exposure = 0;

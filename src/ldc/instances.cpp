@@ -37,6 +37,7 @@ Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : d
     commands.upload(infos_, std::span<const InstanceInfo>(infos));
     transforms_ = Buffer(device, "where instances stand", count * sizeof(GpuTransform));
     table_ = Buffer(device, "instances", count * sizeof(GpuInstance));
+    cubes_ = Buffer(device, "cubes of instances", count * sizeof(PeelrayInstance));
     boxes_ = Buffer(device, "boxes of instances", total * sizeof(PeelrayBox));
     if (count <= 8) return;
     unsorted_boxes_ = Buffer(device, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
@@ -78,6 +79,7 @@ void Instances::record(Commands& commands, const Cubes& cubes) {
                   {"body_lower", cubes.body_lower},
                   {"body_upper", cubes.body_upper},
                   {"instances", table_},
+                  {"instance_cubes", cubes_},
                   {"instance_boxes", boxes}},
                  p, groups_for(p.padded, 64));
     if (count() > TREE_SMALL)
@@ -130,7 +132,7 @@ void Instances::record_large(Commands& commands) {
 
 uint64_t Instances::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &boxes_, &unsorted_boxes_, &middles_, &keys_, &sums_,
+    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &unsorted_boxes_, &middles_, &keys_, &sums_,
                                  &block_sums_, &unsorted_instances_})
         bytes += buffer->bytes();
     return bytes;

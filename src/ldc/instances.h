@@ -23,6 +23,7 @@ class Instances {
     void record(Commands& commands, const Cubes& cubes);
 
     const Buffer& table() const { return table_; }  ///< GpuInstance each
+    const Buffer& cubes() const { return cubes_; }  ///< PeelrayInstance each
     const Buffer& boxes() const { return boxes_; }  ///< PeelrayBox: the hierarchy, see PeelrayTree
     const PeelrayTree& tree() const { return tree_; }
     uint64_t bytes() const;
@@ -35,7 +36,7 @@ class Instances {
 
     Device& device_;
     PeelrayTree tree_{};
-    Buffer infos_, transforms_, table_, boxes_, unsorted_boxes_;
+    Buffer infos_, transforms_, table_, cubes_, boxes_, unsorted_boxes_;
     Buffer middles_, keys_, sums_, block_sums_, unsorted_instances_;  ///< of large hierarchies only
 };
 

@@ -13,7 +13,8 @@ std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_li
                                      {"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
                                      {"instances", scene.instances.table()},
-                                     {"instance_boxes", scene.instances.boxes()}};
+                                     {"instance_boxes", scene.instances.boxes()},
+                                     {"instance_cubes", scene.instances.cubes()}};
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;
 }

@@ -268,6 +268,7 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
                                             {"samples", or_any(c.samples)},
                                             {"sample_ids", or_any(c.sample_ids)},
                                             {"instance_boxes", scene.instances.boxes()},
+                                            {"instance_cubes", scene.instances.cubes()},
                                             {"rays", level.rays},
                                             {"states", level.states},
                                             {"hits", level.hits},

@@ -56,12 +56,17 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
     const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
     const float n = choice.ldc == 0 ? kPlanarResolution : float(choice.ldc);
     std::vector<uint32_t> resolutions;
-    for (const Assembly::Body& body : assembly.bodies) {
+    for (size_t i = 0; i < assembly.bodies.size(); i++) {
+        const Assembly::Body& body = assembly.bodies[i];
         const float share = longest_side(body) / largest;
         // Of very many small bodies each would get more than it can use.
         const float least = assembly.bodies.size() > kFewBodies ? std::min(kLeast, kFinest * share) : kLeast;
-        resolutions.push_back(by_triangles ? serving_resolution(body.triangles)
-                                           : in_sixteens(n * std::max(share, least)));
+        uint32_t resolution = in_sixteens(n * std::max(share, least));
+        // Exact hits need no finer voxels than a sixteenth of a triangle's edge, whatever is asked for.
+        if (choice.hit == HitTest::exact)
+            resolution = std::min(resolution, in_sixteens(16 * std::sqrt(float(body.triangles))));
+        if (by_triangles) resolution = serving_resolution(body.triangles, choice.rebuild || i >= assembly.fixed);
+        resolutions.push_back(resolution);
     }
     return resolutions;
 }

@@ -320,9 +320,10 @@ class Assembler {
 
 }  // namespace
 
-uint32_t serving_resolution(uint64_t triangles) {
-    // Measured on spheres of 8 thousand to 10 million triangles: docs/performance.md.
-    return uint32_t(std::clamp(std::ceil(6 * std::cbrt(double(triangles)) / 16), 1.0, 64.0)) * 16;
+uint32_t serving_resolution(uint64_t triangles, bool rebuilt) {
+    // Measured on meshes of 7 thousand to 10 million triangles: docs/performance.md.
+    const double voxels = (rebuilt ? 4.5 : 6) * std::cbrt(double(triangles));
+    return uint32_t(std::clamp(std::ceil(voxels / 16), 1.0, 64.0)) * 16;
 }
 
 Assembly assemble(const Scene& scene, const Motion& motion) {

@@ -46,8 +46,8 @@ struct Assembly {
 };
 
 /// Voxels along the longest side of a cube that serves a body of so many triangles well: 16 to 1024, a multiple of 16.
-/// Exact hits do not depend on it: it is chosen for speed.
-uint32_t serving_resolution(uint64_t triangles);
+/// Exact hits do not depend on it: it is chosen for speed. One that is built for every frame is the coarser for it.
+uint32_t serving_resolution(uint64_t triangles, bool rebuilt = false);
 
 /// Takes the scene apart so that as little as possible has to be rebuilt for every moment of `motion` (the paper,
 /// section 1.2.1): what stands still, and what moves as one without changing its shape, goes into bodies that are built

@@ -13,6 +13,8 @@ namespace {
 constexpr double kStart = 4, kSample = 2, kBoxes = 1;
 /// Share of the cost that a split must save.
 constexpr double kGain = 0.1;
+/// Share of all rays that both groups of a split must have: for a few rays no cube is worth its start.
+constexpr double kLeastWeight = 0.02;
 constexpr int kDeepest = 8;  // 256 groups at most
 
 double half_area(const glm::vec3& lower, const glm::vec3& upper) {
@@ -104,7 +106,7 @@ class Grouping {
         return extent;
     }
 
-    /// The best split of the group in two; false: it is a single part.
+    /// The best split of the group in two; false: there is none.
     bool find_split(std::vector<uint32_t>& group, std::vector<uint32_t>& other) const {
         if (group.size() < 2) return false;
         double best = INFINITY;
@@ -121,6 +123,7 @@ class Grouping {
             extent = {};
             for (size_t i = 1; i < group.size(); i++) {
                 extent.add(parts_[group[i - 1]], weights_[group[i - 1]]);
+                if (std::min(extent.weight(), behind[i].weight()) < kLeastWeight) continue;
                 const double cost = extent.cost() + behind[i].cost() + cost_of_both(behind[0], extent, behind[i]);
                 if (!(cost < best)) continue;
                 best = cost;
@@ -128,6 +131,7 @@ class Grouping {
                 second.assign(group.begin() + ptrdiff_t(i), group.end());
             }
         }
+        if (first.empty()) return false;
         group = std::move(first);
         other = std::move(second);
         return true;
