@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/scene.h"
@@ -124,7 +125,14 @@ std::vector<glm::mat4> world_matrices(const Scene& scene) {
     return worlds;
 }
 
+void complete_targets(Scene& scene) {
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives)
+            if (const auto make = std::exchange(primitive.make_targets, nullptr)) primitive.targets = make(primitive);
+}
+
 void animate(Scene& scene, const std::string& which, double time) {
+    complete_targets(scene);
     if (scene.animations.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
     const Animation* one = which == "all" ? nullptr : find(scene, which);
     if (which != "all" && !one) {
