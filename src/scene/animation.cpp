@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/motion.h"
@@ -170,7 +171,14 @@ std::vector<const Animation*> find_animations(const Scene& scene, const std::str
     fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
 }
 
+void complete_targets(Scene& scene) {
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives)
+            if (const auto make = std::exchange(primitive.make_targets, nullptr)) primitive.targets = make(primitive);
+}
+
 void animate(Scene& scene, const std::string& which, double time) {
+    complete_targets(scene);
     pose(scene, find_animations(scene, which), time);
 }
 

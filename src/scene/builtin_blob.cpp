@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "scene/shapes.h"
 
 namespace peelray {
@@ -38,6 +39,18 @@ glm::vec3 displaced(const glm::vec3& direction) {
     for (uint32_t octave = 0; octave < 5; ++octave, amplitude *= 0.48f, frequency *= 2.03f)
         sum += amplitude * noise(direction * frequency + glm::vec3(11.3f), octave * 0x9E3779B9u);
     return direction * (0.72f * (1 + sum));
+}
+
+/// What the blob swells to: fewer and higher lobes, still one radius for each direction, so that no moment in between
+/// folds over; and never below `lowest`, where the floor is near.
+glm::vec3 swollen(const glm::vec3& direction, float lowest) {
+    const float lobes = noise(direction * 1.9f + glm::vec3(37.1f), 0x51ED270Bu),
+                ripples = noise(direction * 4.3f + glm::vec3(5.7f), 0xB5297A4Du);
+    const float radius = 0.72f * (1 + 0.42f * lobes + 0.12f * ripples);
+    if (direction.y >= 0) return direction * radius;
+    // The smaller of both, with a soft bend where they meet.
+    const float limit = lowest / direction.y, bend = std::max(0.25f - std::abs(radius - limit), 0.f);
+    return direction * (std::min(radius, limit) - bend * bend);
 }
 
 /// Vertices per ring, from the north pole to the south pole; their sum is `half`.
@@ -80,45 +93,71 @@ void stitch(Primitive& out, uint32_t upper, uint32_t upper_size, uint32_t lower,
     }
 }
 
-void smooth_normals(Primitive& out) {
-    out.normals.assign(out.positions.size(), glm::vec3(0));
-    for (const glm::uvec3& t : out.triangles) {
-        const glm::vec3 area =
-            glm::cross(out.positions[t.y] - out.positions[t.x], out.positions[t.z] - out.positions[t.x]);
-        for (int k = 0; k < 3; ++k) out.normals[t[k]] += area;
+std::vector<glm::vec3> smooth_normals(const std::vector<glm::vec3>& positions,
+                                      const std::vector<glm::uvec3>& triangles) {
+    std::vector<glm::vec3> normals(positions.size(), glm::vec3(0));
+    for (const glm::uvec3& t : triangles) {
+        const glm::vec3 area = glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
+        for (int k = 0; k < 3; ++k) normals[t[k]] += area;
     }
     // The area of a triangle in a 10-million mesh is 1e-6 and its square underflows nothing; the fallback is for safety
     // only.
-    for (size_t i = 0; i < out.normals.size(); ++i) {
-        const float length = glm::length(out.normals[i]);
-        out.normals[i] = length > 0 ? out.normals[i] / length : glm::normalize(out.positions[i]);
+    for (size_t i = 0; i < normals.size(); ++i) {
+        const float length = glm::length(normals[i]);
+        normals[i] = length > 0 ? normals[i] / length : glm::normalize(positions[i]);
     }
+    return normals;
 }
 
 Primitive blob_surface(uint64_t triangles) {
     const std::vector<uint32_t> sizes = ring_sizes(triangles / 2);
+    std::vector<uint32_t> first(1, 1);  // of each ring, then of the south pole; the north pole is vertex 0
+    for (const uint32_t size : sizes) first.push_back(first.back() + size);
+    const uint32_t last = first.back();
     Primitive out;
-    const uint64_t vertices = std::accumulate(sizes.begin(), sizes.end(), uint64_t(2));
-    out.positions.reserve(vertices);
-    out.triangles.reserve(2 * (vertices - 2));
-    out.positions.push_back(displaced({0, 1, 0}));
-    uint32_t previous = 0, previous_size = 1;
-    for (size_t ring = 0; ring < sizes.size(); ++ring) {
+    out.positions.resize(last + 1);
+    out.positions[0] = displaced({0, 1, 0});
+    out.positions[last] = displaced({0, -1, 0});
+    parallel_for(sizes.size(), 4, [&](size_t ring) {
         const double theta = std::numbers::pi * static_cast<double>(ring + 1) / static_cast<double>(sizes.size() + 1);
-        const auto first = static_cast<uint32_t>(out.positions.size());
         for (uint32_t i = 0; i < sizes[ring]; ++i) {
             const double phi = 2 * std::numbers::pi * i / sizes[ring];
-            out.positions.push_back(displaced(
-                glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi))));
+            out.positions[first[ring] + i] =
+                displaced(glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
         }
-        stitch(out, previous, previous_size, first, sizes[ring]);
-        previous = first;
-        previous_size = sizes[ring];
-    }
-    out.positions.push_back(displaced({0, -1, 0}));
-    stitch(out, previous, previous_size, static_cast<uint32_t>(out.positions.size() - 1), 1);
-    smooth_normals(out);
+    });
+    out.triangles.reserve(2 * size_t(last - 1));
+    stitch(out, 0, 1, 1, sizes[0]);
+    for (size_t ring = 1; ring < sizes.size(); ++ring)
+        stitch(out, first[ring - 1], sizes[ring - 1], first[ring], sizes[ring]);
+    stitch(out, first[sizes.size() - 1], sizes.back(), last, 1);
+    out.normals = smooth_normals(out.positions, out.triangles);
     return out;
+}
+
+MorphTarget swell_target(const Primitive& blob, float lowest) {
+    MorphTarget out;
+    out.positions.resize(blob.positions.size());
+    parallel_for(out.positions.size(), 4096,
+                 [&](size_t i) { out.positions[i] = swollen(glm::normalize(blob.positions[i]), lowest); });
+    out.normals = smooth_normals(out.positions, blob.triangles);
+    for (size_t i = 0; i < out.positions.size(); ++i) {
+        out.positions[i] -= blob.positions[i];
+        out.normals[i] -= blob.normals[i];
+    }
+    return out;
+}
+
+/// Out and back; all tangents are 0, so that it rests a little at both ends and the loop has no kink.
+Animation swell(int node) {
+    AnimationChannel weight;
+    weight.node = node;
+    weight.path = AnimationChannel::Path::weights;
+    weight.interpolation = AnimationChannel::Interpolation::cubic;
+    weight.width = 1;
+    weight.times = {0, 1.1f, 2.2f};
+    weight.values = {0, 0, 0, 0, 1, 0, 0, 0, 0};
+    return {"swell", weight.times.back(), {weight}};
 }
 
 }  // namespace
@@ -129,6 +168,9 @@ Scene make_blob(uint64_t triangles) {
     Primitive blob = blob_surface(triangles);
     float lowest = 0;
     for (const glm::vec3& p : blob.positions) lowest = std::min(lowest, p.y);
+    blob.make_targets = [lowest](const Primitive& made) {
+        return std::vector<MorphTarget>{swell_target(made, lowest)};
+    };
     const size_t made = blob.triangles.size();
     build.add("blob", std::move(blob), build.material(metal("metal", {0.90f, 0.86f, 0.78f})));
     Material floor = metal("floor", glm::vec3(0.55f));
@@ -136,6 +178,7 @@ Scene make_blob(uint64_t triangles) {
     build.add("floor", parallelogram({-2, lowest - 0.02f, 2}, {4, 0, 0}, {0, 0, -4}), build.material(floor));
     build.camera({1.7f, 1.25f, 3.1f}, {0, -0.12f, 0}, 34);
     Scene scene = build.take();
+    scene.animations.push_back(swell(0));
     scene.notes.push_back(fmt::format("the blob has {} triangles, the floor 2", made));
     return scene;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
@@ -65,6 +66,9 @@ struct Primitive {
     std::vector<glm::vec4> colors;   ///< linear vertex colour that multiplies the base colour
     std::vector<JointWeights> joints;  ///< one per vertex; empty: no skin moves it
     std::vector<MorphTarget> targets;
+    /// Makes the targets of a primitive that leaves them for later, since a still picture has no use for them and they
+    /// take as much room as the rest of it; see complete_targets(). Empty: `targets` holds all.
+    std::function<std::vector<MorphTarget>(const Primitive&)> make_targets;
     std::vector<glm::uvec3> triangles;
     uint32_t material = 0;
     bool flat = false;  ///< the normals are the triangles' own, also after it is deformed; no vertex is shared
@@ -207,6 +211,10 @@ Scene make_builtin(std::string_view name);
 /// The animations that `which` stands for: a name, an index or "all". Throws Error for an unknown animation, listing
 /// those there are, and for a scene without any.
 std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
+
+/// Makes the morph targets that were left for later. animate() begins with it; call it before looking at
+/// Primitive::targets of a scene that was not animated yet.
+void complete_targets(Scene& scene);
 
 /// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
 /// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.

@@ -140,6 +140,95 @@ TEST(Builtin, BlobHasNoSlivers) {
     EXPECT_EQ(g.upper.z, 2);
 }
 
+/// FNV-1a over the bytes.
+template <typename T>
+uint64_t hash(const std::vector<T>& values) {
+    uint64_t out = 14695981039346656037ull;
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    for (size_t i = 0; i < values.size() * sizeof(T); ++i) out = (out ^ bytes[i]) * 1099511628211ull;
+    return out;
+}
+
+TEST(Builtin, BlobAtRestIsWhatItWasBeforeItCouldSwell) {
+    Scene scene = load_scene("builtin:blob:20000");
+    const Geometry rest = flatten(scene);
+    EXPECT_EQ(hash(rest.triangles), 15758965901404249849ull);
+#ifdef __x86_64__  // elsewhere compilers may fuse a multiplication and an addition and round once
+    EXPECT_EQ(hash(rest.positions), 1415472661313793728ull);
+    EXPECT_EQ(hash(rest.normals), 4165513890747359009ull);
+#endif
+    EXPECT_TRUE(scene.meshes.at(0).primitives.at(0).targets.empty());  // a still picture does not pay for them
+    animate(scene, "swell", 0);
+    EXPECT_EQ(scene.meshes.at(0).primitives.at(0).targets.size(), 1u);
+    const Geometry start = flatten(scene);
+    EXPECT_EQ(start.positions, rest.positions);
+    EXPECT_EQ(start.normals, rest.normals);
+}
+
+/// Of each triangle: the cosine between the mean of its corners' normals and its own.
+std::vector<float> agreements(const Geometry& g) {
+    std::vector<float> out;
+    for (const glm::uvec3& t : g.triangles) {
+        const glm::vec3 face = glm::cross(g.positions[t.y] - g.positions[t.x], g.positions[t.z] - g.positions[t.x]);
+        out.push_back(glm::dot(glm::normalize(face), glm::normalize(g.normals[t.x] + g.normals[t.y] + g.normals[t.z])));
+    }
+    return out;
+}
+
+TEST(Builtin, BlobSwellsAndComesBack) {
+    Scene scene = load_scene("builtin:blob:20000");
+    const Geometry rest = flatten(scene);
+    const float duration = scene.animations.at(0).duration, floor = rest.lower.y;
+    EXPECT_NEAR(duration, 2, 0.5);
+    const auto at = [&](float time) {
+        animate(scene, "swell", time);
+        return flatten(scene);
+    };
+    EXPECT_EQ(at(duration).positions, rest.positions);
+    // No jump where it starts again: the way of the last hundredth is as short as that of the first.
+    const Geometry first = at(0.01f * duration), last = at(0.99f * duration);
+    for (size_t i = 0; i < rest.positions.size(); ++i) {
+        ASSERT_LT(glm::distance(first.positions[i], rest.positions[i]), 2e-3f);
+        ASSERT_LT(glm::distance(last.positions[i], rest.positions[i]), 2e-3f);
+    }
+    for (const float share : {0.15f, 0.25f, 0.35f, 0.5f, 0.8f}) {
+        SCOPED_TRACE(share);
+        const Geometry g = at(share * duration);
+        expect_sound(g, "swollen");
+        std::vector<float> agreement = agreements(g);
+        std::sort(agreement.begin(), agreement.end());
+        EXPECT_GT(agreement[agreement.size() / 100], 0.8f);  // all but one in a hundred
+        // One radius for each direction: every triangle is seen from the middle from behind, so that none covers
+        // another.
+        const size_t blob = g.triangles.size() - 2;
+        for (size_t i = 0; i < blob; ++i) {
+            const glm::uvec3 t = g.triangles[i];
+            const glm::dvec3 a = g.positions[t.x], b = g.positions[t.y], c = g.positions[t.z];
+            ASSERT_GT(glm::dot(glm::cross(b - a, c - a), a), 0) << i;
+            for (int k = 0; k < 3; ++k) ASSERT_GT(g.positions[t[k]].y, floor + 0.019f);
+        }
+    }
+    // It deforms all over: half of the surface moves by more than a tenth of the radius.
+    const Geometry most = at(0.5f * duration);
+    std::vector<float> ways;
+    for (size_t i = 0; i < rest.positions.size(); ++i)
+        ways.push_back(glm::distance(most.positions[i], rest.positions[i]));
+    std::sort(ways.begin(), ways.end());
+    EXPECT_GT(ways[ways.size() / 2], 0.072f);
+    EXPECT_GT(ways.back(), 0.25f);
+    EXPECT_LT(ways.back(), 0.72f);
+}
+
+TEST(Builtin, SmallBlobsSwell) {
+    for (const size_t n : {8u, 10u, 50u}) {
+        Scene scene = load_scene("builtin:blob:" + std::to_string(n));
+        animate(scene, "0", 1.1);
+        const Geometry g = flatten(scene);
+        EXPECT_EQ(g.zero_area, 0u);
+        for (size_t i = 0; i + 4 < g.positions.size(); ++i) EXPECT_GT(g.positions[i].y, g.lower.y);
+    }
+}
+
 TEST(Builtin, Bad) {
     for (const char* name :
          {"builtin:", "builtin:nothing", "builtin:blob", "builtin:blob:", "builtin:blob:7", "builtin:blob:10000001",
