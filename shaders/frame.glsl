@@ -23,13 +23,19 @@ struct Surface {
     uint material;
 };
 
+/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands for.
+const float STRAY_NORMAL = 0.1;
+
+/// How far the position is lifted to the plane through a corner along the corner's normal; `p`: from the corner.
+vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
+    return dot(normal, geometric) > STRAY_NORMAL ? -min(0.0, dot(p, normal)) * normal : vec3(0);
+}
+
 /// Where a shadow ray starts on a coarse smooth mesh: on the surface that the interpolated normals describe, so that its facets
 /// do not shadow each other (Hanika: Hacking the Shadow Terminator, Ray Tracing Gems II, ch. 4).
-vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 weights) {
-    const vec3 pa = (p - a) - min(0.0, dot(p - a, na)) * na;
-    const vec3 pb = (p - b) - min(0.0, dot(p - b, nb)) * nb;
-    const vec3 pc = (p - c) - min(0.0, dot(p - c, nc)) * nc;
-    return (a + pa) * weights.x + (b + pb) * weights.y + (c + pc) * weights.z;
+vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 geometric, vec3 weights) {
+    return p + lifted(p - a, na, geometric) * weights.x + lifted(p - b, nb, geometric) * weights.y +
+           lifted(p - c, nc, geometric) * weights.z;
 }
 
 uint wrapTexel(int i, uint size, uint mode) {
@@ -98,10 +104,11 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     s.geometric = size > 0.0 ? cross_product / size : normal;
     s.front = dot(s.geometric, direction) < 0.0;
     if (!s.front) s.geometric = -s.geometric;
-    // The interpolated normal may disagree with the winding in careless files: it follows the triangle.
-    const float side = dot(normal, s.geometric) < 0.0 ? -1.0 : 1.0;
+    // The interpolated normal may disagree with the winding in careless files: it follows the triangle. One that lies in
+    // the triangle's plane stays, whatever rounding makes of its side.
+    const float side = dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1.0 : 1.0;
     s.normal = visibleNormal(normal * side, s.geometric, -direction);
-    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, weights);
+    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     s.material = triangle_materials[triangle];
     s.base_color = materials[s.material].base_color;
     if (frame[0].has_colors != 0u)

@@ -137,6 +137,7 @@ TEST_F(MovingTest, RebuildingEverythingChangesNoPicture) {
     for (const char* name : {"", "builtin:waves:800"}) {
         Scene scene = *name ? load_scene(name) : three_balls();
         RenderSettings settings = small(scene.cameras.empty() ? kView : scene.cameras[0]);
+        settings.ldc = 64;  // automatic resolutions are others where everything is rebuilt
         const auto renderer = renderer_in(scene, "0", 0.7, sky);
         const RenderResult kept = renderer->render(settings);
         settings.rebuild = true;
