@@ -116,6 +116,7 @@ for bounces in 0 1 4; do figure "frame_bounces_$bounces" builtin:glass --bounces
 figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
+"$program" render builtin:walker -o docs/scene_walker.png --size 260x208 --spp 4 --animation walk --time 1.4
 
 # README.md and docs/accuracy.md: the paper's comparison, and the worst pixels.
 "$program" compare builtin:teapots -o "$work/report.html" --size 480x384 --tracers cubemap,ldc,reference --strip docs/comparison.png

@@ -11,6 +11,7 @@ std::vector<BuiltinScene> builtin_scenes() {
     return {{"teapots", "two mirroring Newell teapots on a polished checkered floor"},
             {"glass", "a glass sphere, torus and block one behind the other, and a mirror"},
             {"tree", "a tree with tens of thousands of leaves, for shadows"},
+            {"walker", "a figure that walks over a mirror, behind and in front of glass"},
             {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"}};
 }
 
@@ -31,6 +32,7 @@ Scene make_builtin(std::string_view name) {
     if (name == "teapots") return make_teapots();
     if (name == "glass") return make_glass();
     if (name == "tree") return make_tree();
+    if (name == "walker") return make_walker();
     if (name == "blob") return make_blob(parse_count(""));
     if (name.starts_with("blob:")) return make_blob(parse_count(name.substr(5)));
     std::string known;

@@ -11,6 +11,7 @@ namespace peelray {
 Scene make_teapots();
 Scene make_glass();
 Scene make_tree();
+Scene make_walker();
 Scene make_blob(uint64_t triangles);
 
 /// Collects a scene: one node with one mesh of one primitive per object.
