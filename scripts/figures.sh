@@ -116,6 +116,7 @@ for bounces in 0 1 4; do figure "frame_bounces_$bounces" builtin:glass --bounces
 figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
+"$program" render builtin:walker -o docs/scene_walker.png --size 260x208 --spp 4 --animation walk --time 1.4
 
 # docs/animation.md: a turntable in four frames.
 if command -v ffmpeg > /dev/null; then

@@ -1,4 +1,5 @@
-// Workgroups for a level's passes, from the length of its queue.
+// Workgroups for a level's passes, from the length of its queue. None if it did not fit, and none for what is left to do for
+// the level before it: everything is done again then.
 #version 460
 #include "common.glsl"
 #include "params.h"
@@ -7,7 +8,9 @@ PARAMS(LevelParams)
 BUFFER(readonly, 0, uint, queue)
 BUFFER(writeonly, 1, uvec3, groups)
 
-void main() { 
-    const uint count = (min(params.capacity, queue[params.level]) + 63u) / 64u;
+void main() {
+    const bool fits = queue[QUEUE_OVERFLOW] == 0u;
+    const uint count = fits ? (min(params.capacity, queue[params.level]) + 63u) / 64u : 0u;
     groups[params.level] = uvec3(min(count, DISPATCH_ROW), (count + DISPATCH_ROW - 1u) / DISPATCH_ROW, 1u);
+    if (!fits && params.level > 0u) groups[params.level - 1u].x = 0u;
 }

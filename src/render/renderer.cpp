@@ -102,7 +102,7 @@ struct Renderer::Impl {
     void build_cubes();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
-    void record_level(const LevelParams& p);
+    void record_levels(uint32_t sample, uint32_t first_row);
     void record_scatter(const LevelParams& p);
     void record_shadow(const LevelParams& p);
     void record_band(uint32_t sample, uint32_t first_row);
@@ -278,27 +278,31 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
                           p, queues.groups(), p.level * 12);
 }
 
-/// Traces and shades one level of the tree of rays.
-void Renderer::Impl::record_level(const LevelParams& p) {
-    const PathLevel& level = queues.level(p.level);
-    if (settings.tracer == Tracer::cubemap) {
-        maps->record_shading(commands, view.frame, level, p);
-        return;
+/// Traces and scatters the levels of the tree of rays, and shades each as soon as it is known that the next one found room:
+/// where one did not, all that follows is left out, for the band is done again.
+void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
+    for (uint32_t i = 0; i <= last_level; i++) {
+        const LevelParams p = level_params(i, sample, first_row);
+        commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
+        if (i > 0) {
+            record_shadow(level_params(i - 1, sample, first_row));
+            const PathLevel& level = queues.level(i);
+            record_trace(commands, device, traced(),
+                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
+                         level.hits, hit, false, Edges::single);
+        }
+        record_scatter(p);
     }
-    commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
-    if (p.level > 0)
-        record_trace(
-            commands, device, traced(),
-            {level.rays, &level.skip, level.capacity, &queues.counters(), p.level, &queues.groups(), p.level * 12ull},
-            level.hits, hit, false, Edges::single);
-    record_scatter(p);
-    record_shadow(p);
+    record_shadow(level_params(last_level, sample, first_row));
 }
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
     record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row));
-    for (uint32_t i = 0; i <= last_level; i++) record_level(level_params(i, sample, first_row));
+    if (settings.tracer == Tracer::cubemap)
+        maps->record_shading(commands, view.frame, queues.level(0), level_params(0, sample, first_row));
+    else
+        record_levels(sample, first_row);
     for (uint32_t i = last_level; i-- > 0;)
         commands.run_indirect(
             device.pass("gather"),

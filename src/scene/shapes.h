@@ -11,6 +11,7 @@ namespace peelray {
 Scene make_teapots();
 Scene make_glass();
 Scene make_tree();
+Scene make_walker();
 Scene make_blob(uint64_t triangles);
 Scene make_waves(uint64_t triangles);
 Scene make_particles(uint64_t count);

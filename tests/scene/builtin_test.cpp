@@ -43,16 +43,18 @@ void expect_sound(const Geometry& g, const std::string& name) {
 }
 
 TEST(Builtin, AllAreSound) {
-    for (const char* name : {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:blob:5000"}) {
+    for (const char* name :
+         {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:walker", "builtin:blob:5000", "builtin:waves",
+          "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
         const Scene scene = load_scene(name);
-        EXPECT_EQ(scene.name, name);
+        EXPECT_TRUE(scene.name.starts_with(name)) << scene.name << " for " << name;
         EXPECT_EQ(scene.cameras.size(), 1u);
         expect_sound(flatten(scene), name);
     }
 }
 
 TEST(Builtin, ListNamesWhatCanBeMade) {
-    ASSERT_EQ(builtin_scenes().size(), 6u);
+    ASSERT_EQ(builtin_scenes().size(), 7u);
     for (const BuiltinScene& scene : builtin_scenes()) {
         EXPECT_FALSE(scene.description.empty());
         if (scene.name == "blob:N") continue;
@@ -61,19 +63,21 @@ TEST(Builtin, ListNamesWhatCanBeMade) {
 }
 
 TEST(Builtin, GlassBodiesAreClosed) {
-    const Scene scene = make_builtin("glass");
     int bodies = 0;
-    for (const Mesh& mesh : scene.meshes)
-        for (const Primitive& p : mesh.primitives) {
-            const Material& material = scene.materials[p.material];
-            if (material.transmission == 0) continue;
-            ++bodies;
-            expect_closed_outwards(p, mesh.name);
-            EXPECT_EQ(material.transmission, 1);
-            EXPECT_FLOAT_EQ(material.ior, 1.5f);
-            EXPECT_GT(material.thickness, 0);
-        }
-    EXPECT_EQ(bodies, 3);
+    for (const char* name : {"glass", "walker", "particles"}) {
+        const Scene scene = make_builtin(name);
+        for (const Mesh& mesh : scene.meshes)
+            for (const Primitive& p : mesh.primitives) {
+                const Material& material = scene.materials[p.material];
+                if (material.transmission == 0) continue;
+                ++bodies;
+                expect_closed_outwards(p, mesh.name);
+                EXPECT_EQ(material.transmission, 1);
+                EXPECT_FLOAT_EQ(material.ior, 1.5f);
+                EXPECT_GT(material.thickness, 0);
+            }
+    }
+    EXPECT_EQ(bodies, 7);
 }
 
 TEST(Builtin, TeapotIsNewells) {
@@ -234,7 +238,7 @@ TEST(Builtin, Bad) {
          {"builtin:", "builtin:nothing", "builtin:blob", "builtin:blob:", "builtin:blob:7", "builtin:blob:10000001",
           "builtin:blob:-8", "builtin:blob:1e6", "builtin:blob:99999999999999999999", "builtin:blob:12 "})
         error_of(name);
-    EXPECT_MENTIONS(error_of("builtin:nothing"), "teapots, glass, tree, blob:N");
+    EXPECT_MENTIONS(error_of("builtin:nothing"), "teapots, glass, tree, walker, blob:N");
 }
 
 }  // namespace
