@@ -117,6 +117,8 @@ figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
 "$program" render builtin:walker -o docs/scene_walker.png --size 260x208 --spp 4 --animation walk --time 1.4
+figure scene_waves builtin:waves --time 1.5
+figure scene_particles builtin:particles --time 1.5
 
 # docs/animation.md: a turntable in four frames.
 if command -v ffmpeg > /dev/null; then

@@ -70,6 +70,7 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
             {"--builder", t.builder},
             {"--traversal", t.traversal},
             {"--block", text(t.block)},
+            {"--rebuild", flag(a.rebuild)},
             {"--aov", list(a.aovs, aov_names())}};
 }
 

@@ -62,7 +62,8 @@ const char* const kHitHelp =
 void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
     const char* group = "Tracing";
     add_parsed(app, "--ldc", tracing.ldc, parse_resolution, "auto or a number from 16 to 2048",
-               "resolution of the layered depth images, 16 to 2048; auto: by the number of triangles")
+               "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; smaller parts get "
+               "fewer; auto: by the number of triangles of each")
         ->type_name("auto|N")
         ->default_str("auto")
         ->group(group);

@@ -20,13 +20,13 @@ glm::uvec3 ordered_bits(const glm::vec3& p) {
     return {ordered_bits(p.x), ordered_bits(p.y), ordered_bits(p.z)};
 }
 
-uint32_t rounded(uint32_t resolution) {
+}  // namespace
+
+uint32_t round_resolution(uint32_t resolution) {
     if (resolution < 16 || resolution > 2048)
         fail("the LDI resolution {} is out of range: choose 16 to 2048 (--ldc)", resolution);
     return (resolution + 15) / 16 * 16;
 }
-
-}  // namespace
 
 TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vertices,
                                  std::span<const glm::uvec3> indices)
@@ -42,7 +42,7 @@ TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vert
 }
 
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution) {
-    return ldcMakeGrid(lower, upper, rounded(resolution));
+    return ldcMakeGrid(lower, upper, round_resolution(resolution));
 }
 
 Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling)
@@ -52,7 +52,7 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling)
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
     for (const CubeBody& body : bodies_) {
-        table.push_back({{}, body.first_triangle, body.triangles, rounded(body.resolution), 0, {}});
+        table.push_back({{}, body.first_triangle, body.triangles, round_resolution(body.resolution), 0, {}});
         lower.push_back(ordered_bits(body.lower));
         upper.push_back(ordered_bits(body.upper));
     }

@@ -29,6 +29,9 @@ struct CubeBody {
     glm::vec3 lower{0}, upper{0};  ///< bounds; of bodies that deform: as they are now, for a guess of what they need
 };
 
+/// The next multiple of 16. Throws Error unless 16 ≤ resolution ≤ 2048.
+uint32_t round_resolution(uint32_t resolution);
+
 /// How a cube is sampled.
 enum class Sampling : uint8_t {
     conservative,  ///< every pixel that a triangle touches: for `exact` hits

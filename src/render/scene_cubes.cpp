@@ -54,7 +54,7 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
     float largest = 1e-30f;
     for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
     const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
-    const float n = choice.ldc == 0 ? kPlanarResolution : float(choice.ldc);
+    const float n = choice.ldc == 0 ? kPlanarResolution : float(round_resolution(choice.ldc));
     std::vector<uint32_t> resolutions;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
@@ -106,7 +106,8 @@ SceneCubes::Stats SceneCubes::stats() const {
     Stats stats;
     stats.bodies = uint32_t(cubes_.bodies().size());
     stats.fixed = fixed_;
-    for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
+    if (choice_.ldc != 0) stats.resolution = round_resolution(choice_.ldc);
+    else for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
     stats.counts = builder_ ? sum_of(fixed_counts_, builder_->counts()) : fixed_counts_;
     stats.bytes = (fixed_size_ + (builder_ ? builder_->size() : TableSize{})).bytes() +
                   cubes_.bodies().size() * (sizeof(LdcBody) + 24);

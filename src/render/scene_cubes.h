@@ -39,7 +39,7 @@ class SceneCubes {
 
     struct Stats {
         uint32_t bodies = 0, fixed = 0;  ///< fixed: built once
-        uint32_t resolution = 0;         ///< the largest of all
+        uint32_t resolution = 0;         ///< what was asked for, or the largest of all
         LdcCounters counts{};            ///< of all bodies; longest: the longest list of all
         uint64_t bytes = 0;              ///< of the tables in use
         uint64_t scratch_bytes = 0;

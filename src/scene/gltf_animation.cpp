@@ -10,7 +10,8 @@ namespace {
 /// Scene::nodes by the file's own number; -1: not shown.
 std::vector<int> nodes_by_source(const GltfLoader& loader) {
     std::vector<int> out(loader.file.model().nodes.size(), -1);
-    for (size_t i = 0; i < loader.scene.nodes.size(); ++i) out[size_t(loader.scene.nodes[i].source)] = int(i);
+    for (size_t i = 0; i < loader.scene.nodes.size(); ++i)
+        if (const int source = loader.scene.nodes[i].source; source >= 0) out[size_t(source)] = int(i);
     return out;
 }
 

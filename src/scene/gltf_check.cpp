@@ -17,7 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 8> supported_extensions = {
+constexpr std::array<std::string_view, 9> supported_extensions = {
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",     "KHR_materials_transmission",
     "KHR_materials_unlit",   "KHR_materials_volume",
@@ -149,7 +150,9 @@ Members file_members(size_t view_without_bytes) {
         objects("nodes", {text("name"), indices("children", "nodes"), index("mesh", "meshes"),
                           index("camera", "cameras"), index("skin", "skins"), numbers("matrix", 16),
                           numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3), numbers("weights", 0),
-                          object("extensions", {object("KHR_lights_punctual", {index("light", "lights")})})}),
+                          object("extensions", {object("KHR_lights_punctual", {index("light", "lights")}),
+                                                object("EXT_mesh_gpu_instancing",
+                                                       {required(index_map("attributes", "accessors"))})})}),
         objects("meshes", {text("name"), numbers("weights", 0),
                            objects("primitives", {or_else(index_map("attributes", "accessors"), json::object()),
                                                   index("indices", "accessors"), index("material", "materials"),

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <optional>
+#include <utility>
 
 #include "scene/gltf.h"
 #include "scene/transform.h"
@@ -18,16 +21,19 @@ glm::vec3 to_vec3(const std::vector<double>& v, const glm::vec3& missing) {
     return v.empty() ? missing : glm::vec3(v[0], v[1], v[2]);
 }
 
-/// Translation, rotation and scale of a node; a rotation without direction counts as none.
+/// From x, y, z, w; a rotation without direction counts as none.
+template <typename T>
+glm::quat rotation_of(const T* xyzw) {
+    glm::quat rotation;
+    rotation.x = static_cast<float>(xyzw[0]), rotation.y = static_cast<float>(xyzw[1]);
+    rotation.z = static_cast<float>(xyzw[2]), rotation.w = static_cast<float>(xyzw[3]);
+    const float length = glm::length(rotation);
+    return length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
+}
+
 Placement placement_of(const tinygltf::Node& from) {
     Placement out;
-    if (const std::vector<double>& r = from.rotation; !r.empty()) {
-        glm::quat& rotation = out.rotation;
-        rotation.x = static_cast<float>(r[0]), rotation.y = static_cast<float>(r[1]);
-        rotation.z = static_cast<float>(r[2]), rotation.w = static_cast<float>(r[3]);
-        const float length = glm::length(rotation);
-        rotation = length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
-    }
+    if (!from.rotation.empty()) out.rotation = rotation_of(from.rotation.data());
     out.translation = to_vec3(from.translation, glm::vec3(0));
     out.scale = to_vec3(from.scale, glm::vec3(1));
     return out;
@@ -91,9 +97,65 @@ class NodeReader {
         if (const auto light = from.extensions.find("KHR_lights_punctual");
             light != from.extensions.end() && light->second.Has("light"))
             node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
+        const std::vector<glm::mat4> instances = instances_of(index);
         loader_.scene.nodes.push_back(std::move(node));
         worlds_.push_back(world);
-        return static_cast<int>(worlds_.size()) - 1;
+        const int added = static_cast<int>(worlds_.size()) - 1;
+        if (!instances.empty()) add_instances(added, instances);
+        return added;
+    }
+
+    /// EXT_mesh_gpu_instancing: transforms inside of the node; none: the mesh is shown once.
+    std::vector<glm::mat4> instances_of(size_t index) {
+        const tinygltf::Node& from = model_.nodes[index];
+        const auto extension = from.extensions.find("EXT_mesh_gpu_instancing");
+        if (extension == from.extensions.end() || from.mesh < 0) return {};
+        if (from.skin >= 0) {
+            ++loader_.ignored["{} nodes with a skin and EXT_mesh_gpu_instancing shown once"];
+            return {};
+        }
+        const std::string where = loader_.file.where("nodes", index) + ".extensions.EXT_mesh_gpu_instancing";
+        std::optional<uint32_t> count;
+        const auto read = [&](const char* name, uint32_t components) -> std::vector<float> {
+            const tinygltf::Value& attributes = extension->second.Get("attributes");
+            if (!attributes.Has(name)) return {};
+            const int accessor = attributes.Get(name).GetNumberAsInt();
+            const GltfFile::Accessor info = loader_.file.accessor(accessor);
+            if (info.components != components)
+                fail("{}: {} needs {} numbers an instance, {} has {}", where, name, components, info.where,
+                     info.components);
+            if (count && *count != info.count)
+                fail("{}: {} has {} instances, another attribute {}", where, name, info.count, *count);
+            count = info.count;
+            return loader_.file.floats(accessor);
+        };
+        const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                                 scales = read("SCALE", 3);
+        std::vector<glm::mat4> out;
+        for (size_t i = 0; i < count.value_or(0); ++i) {
+            Placement at;
+            if (!translations.empty()) at.translation = glm::make_vec3(&translations[3 * i]);
+            if (!rotations.empty()) at.rotation = rotation_of(&rotations[4 * i]);
+            if (!scales.empty()) at.scale = glm::make_vec3(&scales[3 * i]);
+            out.push_back(at.matrix());
+            check_finite(out.back(), fmt::format("{}: instance {}", where, i));
+        }
+        return out;
+    }
+
+    /// The node's mesh, shown by children that stand where the instances are.
+    void add_instances(int parent, const std::vector<glm::mat4>& instances) {
+        const auto p = static_cast<size_t>(parent);
+        Node node;
+        node.name = loader_.scene.nodes[p].name;
+        node.parent = parent;
+        node.mesh = std::exchange(loader_.scene.nodes[p].mesh, -1);
+        node.weights = node.rest_weights = loader_.scene.nodes[p].weights;
+        for (const glm::mat4& instance : instances) {
+            node.local = instance;
+            loader_.scene.nodes.push_back(node);
+            worlds_.push_back(worlds_[p] * instance);
+        }
     }
 
     int show_mesh(int mesh) {

@@ -123,7 +123,8 @@ struct Node {
     bool fixed = true;           ///< no animation can move it: the file gives a matrix, or the scene is no glTF file
     std::vector<float> weights;  ///< of its mesh's morph targets now; empty: the mesh's own
     std::vector<float> rest_weights;  ///< the same at rest
-    int source = -1;                  ///< glTF: index into the file's own nodes (animations and skins speak of those)
+    int source = -1;                  ///< glTF: index into the file's own nodes (animations and skins speak of those);
+                                      ///< -1: one of a node's instances
 };
 
 /// Where light comes from on a miss.

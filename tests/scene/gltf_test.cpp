@@ -193,6 +193,39 @@ TEST(Gltf, HierarchyIsDepthFirstAndTransforms) {
     expect_near(geometry.positions[geometry.triangles[2].y], {0, 2, 2});
 }
 
+TEST(Gltf, InstancesOfANode) {
+    const TempFolder folder;
+    json gltf = square();
+    const size_t translation = add_accessor(gltf, pack<float>({1, 2, 3, 4, 5, 6}), 5126, "VEC3", 2);
+    const size_t rotation = add_accessor(gltf, pack<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}), 5120, "VEC4", 2);
+    gltf["accessors"][rotation]["normalized"] = true;
+    const size_t scale = add_accessor(gltf, pack<float>({1, 1, 1, 2, 2, 2}), 5126, "VEC3", 2);
+    gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    gltf["nodes"][0]["translation"] = {10, 0, 0};
+    json& attributes = gltf["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    attributes = {{"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}, {"_ID", 0}};
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.nodes.size(), 3u);
+    EXPECT_EQ(scene.nodes[0].mesh, -1);
+    const Geometry g = flatten(scene);
+    ASSERT_EQ(g.triangles.size(), 4u);
+    expect_near(g.positions[g.triangles[0].y], glm::vec3(1, 2, 3) + glm::vec3(10, 0, 0) + glm::vec3(1, 0, 0));
+    expect_near(g.positions[g.triangles[2].y], glm::vec3(4, 5, 6) + glm::vec3(10, 0, 0) + glm::vec3(-2, 0, 0));
+
+    json bad = gltf;
+    bad["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = rotation;
+    EXPECT_MENTIONS(error_of(folder, bad), "SCALE needs 3 numbers an instance");
+    bad = gltf;
+    bad["accessors"][scale]["count"] = 1;
+    EXPECT_MENTIONS(error_of(folder, bad), "another attribute");
+    bad = gltf;
+    bad["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = 99;
+    EXPECT_MENTIONS(error_of(folder, bad), "99 is out of range");
+    bad = gltf;
+    bad["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"].erase("attributes");
+    EXPECT_MENTIONS(error_of(folder, bad), "attributes");
+}
+
 TEST(Gltf, SceneChoice) {
     const TempFolder folder;
     json gltf = square();
