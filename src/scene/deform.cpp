@@ -49,15 +49,18 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
     if (skinned) joints = joint_matrices(scene.skins[size_t(node.skin)], worlds);
     glm::mat4 matrix = world;
     NormalTransform to_normal(world);
+    size_t mirrored = 0;
     for (size_t i = 0; i < out.positions.size(); i++) {
         if (skinned) {
             matrix = blended(primitive.joints[i], joints, world);
             to_normal = NormalTransform(matrix);
         }
-        if (i == 0) out.mirrors = to_normal.mirrors;
+        mirrored += to_normal.mirrors;
         out.positions[i] = glm::vec3(matrix * glm::vec4(out.positions[i], 1));
         out.normals[i] = to_normal(out.normals[i], primitive.normals[i]);
     }
+    // Joints may disagree, one of them scaled to nothing or inside out: most vertices decide.
+    out.mirrors = 2 * mirrored > out.positions.size();
     if (primitive.flat)
         for (const glm::uvec3& t : primitive.triangles) {
             const glm::dvec3 a = out.positions[t.x], b = out.positions[t.y], c = out.positions[t.z];

@@ -129,6 +129,23 @@ TEST(Skin, BendsAStrip) {
     }
 }
 
+TEST(Skin, MostVerticesTellWhetherItIsInsideOut) {
+    // The first vertices hang on a joint that is scaled to nothing, the others on one that mirrors.
+    Scene scene = strip();
+    scene.nodes[2].parent = -1;
+    scene.nodes[1].local = Placement{{0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0}}.matrix();
+    scene.nodes[2].local = Placement{{0, 1, 0}, {1, 0, 0, 0}, {-1, 1, 1}}.matrix();
+    const Geometry g = flatten(scene);
+    size_t looked_at = 0;
+    for (const glm::uvec3& t : g.triangles) {
+        const glm::vec3 face = glm::cross(g.positions[t.y] - g.positions[t.x], g.positions[t.z] - g.positions[t.x]);
+        if (glm::length(face) == 0) continue;
+        ++looked_at;
+        EXPECT_GT(glm::dot(face, g.normals[t.x] + g.normals[t.y] + g.normals[t.z]), 0);
+    }
+    EXPECT_GE(looked_at, 4u);
+}
+
 TEST(Animate, ForgetsWhatWasBefore) {
     Scene scene = strip(), fresh = strip();
     animate(scene, "move", 1);
