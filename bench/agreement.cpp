@@ -14,10 +14,9 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "ldc/compute_builder.h"
 #include "ldc/ray_sets.h"
-#include "ldc/tracer.h"
 #include "reference/oracle.h"
+#include "render/ray_scene.h"
 
 namespace peelray {
 namespace {
@@ -37,7 +36,7 @@ struct Options {
 struct Case {
     double off = -1;
     Ray ray{};
-    Hit hit{};
+    FileHit hit{};
     OracleHit right{};
 };
 
@@ -60,43 +59,41 @@ struct Tally {
     }
 };
 
-/// One scene with its cube on the device, and its oracle.
+/// One scene with its cubes on the device, and its oracle.
 class Bench {
   public:
-    Bench(Device& device, const Geometry& geometry, const Oracle& oracle, uint32_t ldc, HitTest test)
+    Bench(Device& device, const Scene& scene, const Geometry& geometry, const Oracle& oracle, uint32_t ldc,
+          HitTest test)
         : device_(device),
           geometry_(geometry),
           oracle_(oracle),
           test_(test),
           commands_(device),
-          builder_(device),
-          triangles_(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper) {
-        builder_.build(commands_, triangles_, cube_, ldc, sampling_for(test));
+          scene_(device, scene, assemble(scene, motion_of(scene, "")), {ldc, test, false}) {
+        for (const LdcBody& body : scene_.download_bodies(commands_)) voxel_ = std::max(voxel_, body.grid.voxel);
     }
 
     Tally run(RayKind kind, uint64_t count, uint32_t seed, const std::function<void(uint64_t)>& progress) {
         // Where planar hits are good for a voxel only, a frame's rays start 0.7 voxels off their surface: so do these.
-        test::RaySource source(geometry_, seed, test_ == HitTest::planar ? 0.7 * cube_.grid.voxel : 0);
+        test::RaySource source(geometry_, seed, test_ == HitTest::planar ? 0.7 * voxel_ : 0);
         Tally tally;
         constexpr uint64_t batch = 1 << 20;
-        Buffer rays(device_, "rays", batch * sizeof(Ray)), hits(device_, "hits", batch * sizeof(Hit));
+        Buffer rays(device_, "rays", batch * sizeof(Ray)), hits(device_, "hits", batch * sizeof(FileHit));
         for (uint64_t first = 0; first < count; first += batch) {
             std::vector<Ray> sent(std::min(batch, count - first));
             for (Ray& ray : sent) ray = source.make(kind);
             commands_.upload(rays, std::span<const Ray>(sent));
-            record_trace(commands_, device_, cube_, triangles_, {rays, nullptr, uint32_t(sent.size())}, hits, test_,
-                         false);
+            scene_.record(commands_, rays, uint32_t(sent.size()), hits, false);
             commands_.submit();
-            judge(sent, commands_.download<Hit>(hits, sent.size()), tally);
+            judge(sent, commands_.download<FileHit>(hits, sent.size()), tally);
             progress(sent.size());
         }
         return tally;
     }
-    const Cube& cube() const { return cube_; }
 
   private:
     /// Judges all answers on all cores.
-    void judge(const std::vector<Ray>& rays, const std::vector<Hit>& hits, Tally& tally) {
+    void judge(const std::vector<Ray>& rays, const std::vector<FileHit>& hits, Tally& tally) {
         std::atomic<size_t> next{0};
         std::mutex mutex;
         std::vector<std::thread> threads;
@@ -111,10 +108,10 @@ class Bench {
         for (std::thread& thread : threads) thread.join();
     }
 
-    void judge(const Ray& ray, const Hit& hit, Tally& tally) const {
+    void judge(const Ray& ray, const FileHit& hit, Tally& tally) const {
         const Case answer{0, ray, hit, oracle_.closest(oracle_ray(ray))};
         const double off = distance(answer);
-        const bool own = off <= (test_ == HitTest::exact ? 1e-5 : cube_.grid.voxel / oracle_.diagonal());
+        const bool own = off <= (test_ == HitTest::exact ? 1e-5 : voxel_ / oracle_.diagonal());
         tally.rays++;
         tally.hits += answer.right.hit();
         tally.same += own;
@@ -145,11 +142,11 @@ class Bench {
         for (double radius : {0.25, 0.5, 0.75, 1.0})
             for (int i = 0; i < 12; i++) {
                 OracleRay moved = oracle_ray(answer.ray);
-                const double angle = i * 0.5235987755982988, r = radius * double(cube_.grid.voxel);
+                const double angle = i * 0.5235987755982988, r = radius * double(voxel_);
                 moved.origin += r * (std::cos(angle) * x + std::sin(angle) * y);
                 Case other = answer;
                 other.right = oracle_.closest(moved);
-                if (distance(other) * oracle_.diagonal() <= double(cube_.grid.voxel)) return true;
+                if (distance(other) * oracle_.diagonal() <= double(voxel_)) return true;
             }
         return false;
     }
@@ -171,9 +168,8 @@ class Bench {
     const Oracle& oracle_;
     HitTest test_;
     Commands commands_;
-    ComputeBuilder builder_;
-    TriangleBuffers triangles_;
-    Cube cube_;
+    RayScene scene_;
+    float voxel_ = 0;  ///< edge of the largest voxels of all cubes
 };
 
 Json describe(const Case& c) {
@@ -188,9 +184,10 @@ Json describe(const Case& c) {
 
 Json measure(Device& device, const std::string& scene, const std::string& hit, const Options& options,
              uint64_t& wrong) {
-    const Geometry geometry = flatten(load_scene(scene));
+    const Scene source = load_scene(scene);
+    const Geometry geometry = flatten(source);
     const Oracle oracle(geometry);
-    Bench bench(device, geometry, oracle, options.ldc, hit == "planar" ? HitTest::planar : HitTest::exact);
+    Bench bench(device, source, geometry, oracle, options.ldc, hit == "planar" ? HitTest::planar : HitTest::exact);
     Json result = {{"scene", scene}, {"triangles", geometry.triangles.size()}, {"hit", hit}, {"ldc", options.ldc}};
     Tally all;
     Progress progress(scene + ", " + hit, double(options.rays));

@@ -118,6 +118,14 @@ figure scene_tree builtin:tree
 figure scene_blob builtin:blob:20000
 "$program" render builtin:walker -o docs/scene_walker.png --size 260x208 --spp 4 --animation walk --time 1.4
 
+# docs/animation.md: a turntable in four frames.
+if command -v ffmpeg > /dev/null; then
+    "$program" render builtin:teapots -o "$work/turn_%d.png" --turntable 4 --size 240x192 --spp 4
+    ffmpeg -loglevel error -y -i "$work/turn_%d.png" -vf tile=4x1:padding=4:color=white -frames:v 1 docs/turntable.png
+else
+    echo "figures: there is no ffmpeg: docs/turntable.png stays as it is" >&2
+fi
+
 # README.md and docs/accuracy.md: the paper's comparison, and the worst pixels.
 "$program" compare builtin:teapots -o "$work/report.html" --size 480x384 --tracers cubemap,ldc,reference --strip docs/comparison.png
 for scene in teapots tree; do
@@ -134,4 +142,4 @@ if [ "${2:-}" = readme ]; then
     shrink docs/glass.png docs/teapots.png
 fi
 
-shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/frame_cubemap.png docs/scene_*.png
+shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/frame_cubemap.png docs/scene_*.png docs/turntable.png

@@ -21,5 +21,5 @@ void main() {
     const vec3 radiance = nodes[i].radiance;
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
-    picture[at] = before + vec4(finite ? radiance : vec3(0), hits[i].triangle != 0xffffffffu ? 1.0 : 0.0);
+    picture[at] = before + vec4(finite ? radiance : vec3(0), hits[i].triangle != NO_TRIANGLE ? 1.0 : 0.0);
 }

@@ -8,9 +8,10 @@ PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
 #include "scene_buffers.glsl"
-BUFFER(readonly, 11, Ray, rays)
-BUFFER(readonly, 12, Hit, hits)
-BUFFER(writeonly, 13, vec4, aovs)
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, Hit, hits)
+BUFFER(writeonly, 14, vec4, aovs)
+BUFFER(readonly, 15, uint, triangle_ids)
 #include "frame.glsl"
 #include "camera.glsl"
 
@@ -23,9 +24,9 @@ void main() {
     const Hit hit = hits[i];
     const float infinity = uintBitsToFloat(0x7f800000u);
     vec4 ids = vec4(infinity, -1, -1, 0), normal = vec4(0), color = vec4(0), position = vec4(0);
-    if (hit.triangle != 0xffffffffu) {
-        const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), rays[i].direction);
-        ids = vec4(hit.t, float(hit.triangle), float(s.material), 1);
+    if (hit.triangle != NO_TRIANGLE) {
+        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), rays[i].direction);
+        ids = vec4(hit.t, float(instances[hit.instance].info.first_id + triangle_ids[hit.triangle]), float(s.material), 1);
         normal = vec4(s.normal, 0);
         color = vec4(s.base_color, 1);
         position = vec4(s.position, 1);

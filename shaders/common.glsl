@@ -9,6 +9,11 @@
 #define BUFFER(access, index, type, name) \
     layout(set = 0, binding = index, scalar) access buffer name##_block { type name[]; };
 
+// The same of a type whose size is a multiple of 8 or 16 bytes, and whose members lie as std430 has them: loaded at once, not
+// word by word.
+#define BUFFER_ALIGNED(access, index, type, name) \
+    layout(set = 0, binding = index, std430) access buffer name##_block { type name[]; };
+
 // The pass's parameters: one struct from params.h.
 #define PARAMS(type) \
     layout(push_constant, scalar) uniform params_block { type params; };

@@ -1,15 +1,20 @@
-// The cube's buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 6.
+// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9.
 #ifndef CUBE_FIRST_BINDING
 #define CUBE_FIRST_BINDING 0
 #endif
-BUFFER(readonly, CUBE_FIRST_BINDING + 0, uvec2, top_table)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 0, uvec2, top_table)
 BUFFER(readonly, CUBE_FIRST_BINDING + 1, uint, node_table)
 BUFFER(readonly, CUBE_FIRST_BINDING + 2, uint, voxel_table)
-BUFFER(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
 BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
 BUFFER(readonly, CUBE_FIRST_BINDING + 5, vec3, positions)
 BUFFER(readonly, CUBE_FIRST_BINDING + 6, uvec3, triangles)
+BUFFER(readonly, CUBE_FIRST_BINDING + 7, GpuInstance, instances)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 8, PeelrayBox, instance_boxes)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 9, PeelrayInstance, instance_cubes)
 
+#define PEELRAY_INSTANCE(i) instance_cubes[i]
+#define PEELRAY_BOX(i) instance_boxes[i]
 #define PEELRAY_TOP(i) top_table[i]
 #define PEELRAY_NODE(i) node_table[i]
 #define PEELRAY_VOXEL(i) voxel_table[i]
@@ -26,9 +31,13 @@ void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
 
 /// Barycentric weights (second and third corner) of a planar hit at `p`: of the nearest point of the triangle's plane, moved
 /// into the triangle.
-vec2 cubeWeights(uint id, vec3 p) {
+vec2 cubeWeights(uint instance, uint triangle, vec3 p) {
     vec3 a, b, c;
-    cubeTriangle(id, a, b, c);
+    cubeTriangle(triangle, a, b, c);
+    const GpuTransform to_world = instances[instance].to_world;
+    a = to_world.linear * a + to_world.position;
+    b = to_world.linear * b + to_world.position;
+    c = to_world.linear * c + to_world.position;
     const vec3 n = cross(b - a, c - a);
     const vec2 uv = max(vec2(dot(cross(p - a, c - a), n), dot(cross(b - a, p - a), n)) / dot(n, n), vec2(0));
     return uv / max(1.0, uv.x + uv.y);

@@ -8,13 +8,13 @@ PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
 #include "scene_buffers.glsl"
-BUFFER(readonly, 11, Ray, rays)
-BUFFER(readonly, 12, RayState, states)
-BUFFER(readonly, 13, Hit, hits)
-BUFFER(writeonly, 14, PathNode, nodes)
-BUFFER(readonly, 15, uint, triangle_objects)
-BUFFER(readonly, 16, GpuObject, objects)
-BUFFER(readonly, 17, uvec2, probes)
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, RayState, states)
+BUFFER(readonly, 14, Hit, hits)
+BUFFER(writeonly, 15, PathNode, nodes)
+BUFFER(readonly, 16, uint, triangle_objects)
+BUFFER(readonly, 17, GpuObject, objects)
+BUFFER(readonly, 18, uvec2, probes)
 #define CUBE_TEXEL(index) unpackTexel(probes[index])
 #include "cubemap.glsl"
 #include "frame.glsl"
@@ -51,11 +51,11 @@ void main() {
     const RayState state = states[i];
     const Hit hit = hits[i];
     vec3 radiance;
-    if (hit.triangle == 0xffffffffu) {
+    if (hit.triangle == NO_TRIANGLE) {
         radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
     } else {
-        object = objects[triangle_objects[hit.triangle]];
-        const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), ray.direction);
+        object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
+        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
         const GpuMaterial m = materials[s.material];
         Branch reflection, refraction;
         radiance = scatterSurface(s, ray.direction, state, reflection, refraction);

@@ -7,19 +7,19 @@ PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
 #include "scene_buffers.glsl"
-BUFFER(readonly, 11, Ray, rays)
-BUFFER(readonly, 12, Hit, hits)
-BUFFER(, 13, PathNode, nodes)
-BUFFER(readonly, 14, GpuLight, lights)
-BUFFER(readonly, 15, GpuShadowMap, shadow_maps)
-BUFFER(readonly, 16, float, shadow_depths)
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, Hit, hits)
+BUFFER(, 14, PathNode, nodes)
+BUFFER(readonly, 15, GpuLight, lights)
+BUFFER(readonly, 16, GpuShadowMap, shadow_maps)
+BUFFER(readonly, 17, float, shadow_depths)
 #define SHADOW_DEPTH(index) shadow_depths[index]
 #include "cubemap.glsl"
 #include "shadow_map.glsl"
 #include "frame.glsl"
 #include "lighting.glsl"
 
-vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle) {
+vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from) {
     uint face = 6u * index;
     if (shadow_maps[face + 1u].size != 0u) {
         vec2 unused;
@@ -28,14 +28,14 @@ vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle) {
     return vec3(shadowMapShare(shadow_maps[face], s.shadow_start, s.geometric, direction));
 }
 
-vec3 skyVisibility(Surface s, uint seed, uint triangle) { return vec3(1); }
+vec3 skyVisibility(Surface s, uint seed, SurfaceId from) { return vec3(1); }
 
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= params.capacity) return;
     const Hit hit = hits[i];
-    if (hit.triangle == 0xffffffffu) return;
+    if (hit.triangle == NO_TRIANGLE) return;
     const vec3 direction = rays[i].direction;
-    const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), direction);
-    nodes[i].radiance += lightSurface(s, hit.triangle, -direction, 0u);
+    const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), direction);
+    nodes[i].radiance += lightSurface(s, SurfaceId(hit.instance, hit.triangle), -direction, 0u);
 }

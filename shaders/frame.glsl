@@ -1,9 +1,10 @@
 // Access to the scene during a frame: materials, textures, environment, and the surface at a hit.
 // Include after the buffers it reads: frame, materials, texture_infos, texels, normals, uvs, colors, triangle_materials,
-// positions, triangles, environment. Directions point away from the surface.
+// positions, triangles, instances, environment. Directions point away from the surface.
 #ifndef PEELRAY_FRAME_GLSL
 #define PEELRAY_FRAME_GLSL
 
+#include "placed.glsl"
 #include "shading.glsl"
 
 /// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
@@ -17,17 +18,24 @@ struct Surface {
     vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
     vec3 base_color;
     float error;       ///< bound on the position's rounding error, world units
+    float offset;      ///< height above it from which secondary rays count, world units (planar hits)
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
 };
 
+/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands for.
+const float STRAY_NORMAL = 0.1;
+
+/// How far the position is lifted to the plane through a corner along the corner's normal; `p`: from the corner.
+vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
+    return dot(normal, geometric) > STRAY_NORMAL ? -min(0.0, dot(p, normal)) * normal : vec3(0);
+}
+
 /// Where a shadow ray starts on a coarse smooth mesh: on the surface that the interpolated normals describe, so that its facets
 /// do not shadow each other (Hanika: Hacking the Shadow Terminator, Ray Tracing Gems II, ch. 4).
-vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 weights) {
-    const vec3 pa = (p - a) - min(0.0, dot(p - a, na)) * na;
-    const vec3 pb = (p - b) - min(0.0, dot(p - b, nb)) * nb;
-    const vec3 pc = (p - c) - min(0.0, dot(p - c, nc)) * nc;
-    return (a + pa) * weights.x + (b + pb) * weights.y + (c + pc) * weights.z;
+vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 geometric, vec3 weights) {
+    return p + lifted(p - a, na, geometric) * weights.x + lifted(p - b, nb, geometric) * weights.y +
+           lifted(p - c, nc, geometric) * weights.z;
 }
 
 uint wrapTexel(int i, uint size, uint mode) {
@@ -58,27 +66,49 @@ vec4 sampleTexture(int index, vec2 uv) {
     return mix(top, bottom, f.y);
 }
 
-Surface surfaceAt(uint triangle, vec2 uv, vec3 direction) {
+/// A normal as its instance turns it, unit: cofactors are the inverse transpose times the determinant.
+vec3 placedNormal(mat3 cofactors, vec3 n) {
+    const vec3 turned = cofactors * n;
+    return dot(turned, turned) > 0.0 ? normalize(turned) : n;
+}
+
+Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     Surface s;
     const uvec3 corners = triangles[triangle];
-    const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
-    const vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
+    vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    vec3 reach = max(abs(a), max(abs(b), abs(c)));
+    float turned = 1.0;
+    if (instances[instance].moved != 0u) {
+        const GpuTransform to_world = instances[instance].to_world;
+        const mat3 m = to_world.linear;
+        reach = mat3(abs(m[0]), abs(m[1]), abs(m[2])) * reach + abs(to_world.position);
+        a = placedFrom(to_world, a, vec3(0));
+        b = placedFrom(to_world, b, vec3(0));
+        c = placedFrom(to_world, c, vec3(0));
+        turned = instances[instance].mirrored != 0u ? -1.0 : 1.0;
+        const mat3 cofactors = turned * mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+        na = placedNormal(cofactors, na);
+        nb = placedNormal(cofactors, nb);
+        nc = placedNormal(cofactors, nc);
+    }
     uv = clamp(uv, vec2(0), vec2(1));  // planar hits may lie beside their triangle
     const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
     s.position = a * weights.x + b * weights.y + c * weights.z;
-    const vec3 largest = max(abs(a), max(abs(b), abs(c)));
-    s.error = max(largest.x, max(largest.y, largest.z)) * 1e-6;
-    const vec3 cross_product = cross(b - a, c - a);
+    s.error = largest(reach) * 1e-6;
+    s.offset = frame[0].surface_offset * instances[instance].voxel;
+    const vec3 cross_product = turned * cross(b - a, c - a);
     const float size = length(cross_product);
     vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;
     normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0, 1, 0);
     s.geometric = size > 0.0 ? cross_product / size : normal;
     s.front = dot(s.geometric, direction) < 0.0;
     if (!s.front) s.geometric = -s.geometric;
-    // The interpolated normal may disagree with the winding in careless files: it follows the triangle.
-    const float side = dot(normal, s.geometric) < 0.0 ? -1.0 : 1.0;
+    // The interpolated normal may disagree with the winding in careless files: it follows the triangle. One that lies in
+    // the triangle's plane stays, whatever rounding makes of its side.
+    const float side = dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1.0 : 1.0;
     s.normal = visibleNormal(normal * side, s.geometric, -direction);
-    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, weights);
+    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     s.material = triangle_materials[triangle];
     s.base_color = materials[s.material].base_color;
     if (frame[0].has_colors != 0u)
@@ -142,12 +172,12 @@ vec3 transmittance(uint medium, float t) {
 
 /// A ray along `direction` as far as `reach` from the point `start` of a surface. It starts off the triangle's plane by the
 /// position's error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6).
-/// Planar hits know surfaces to a voxel only: there a ray counts from where it is frame[0].surface_offset above the plane. It
+/// Planar hits know surfaces to a voxel only: there a ray counts from where it is Surface::offset above the plane. It
 /// stays on its line until then, unless it is so flat that it would miss too much: then it is lifted as well.
 Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
     const float slope = dot(direction, s.geometric);
-    const float first = min(frame[0].surface_offset / max(abs(slope), 1e-6), FLATTEST_START * frame[0].surface_offset);
-    const float lift = s.error + (frame[0].surface_offset - first * abs(slope));
+    const float first = min(s.offset / max(abs(slope), 1e-6), FLATTEST_START * s.offset);
+    const float lift = s.error + (s.offset - first * abs(slope));
     return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
 }
 

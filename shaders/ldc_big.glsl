@@ -1,6 +1,6 @@
 // A queued large triangle, projected again.
-LdcTriangle bigTriangle(uint id) {
+LdcTriangle bigTriangle(CubeGrid grid, uint id) {
     const uvec3 corners = triangles[id >> 2u];
     const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
-    return ldcProject(params.grid, a, b, c, ldcNormal(a, b, c, params.grid.inv_voxel), id & 3u);
+    return ldcProject(grid, a, b, c, ldcNormal(a, b, c, grid.inv_voxel), id & 3u);
 }

@@ -102,6 +102,13 @@ ivec2 ldcDepthRange(LdcTriangle t, vec2 centre, bool planar) {
     return ivec2(floor(range + vec2(-2.0 * LDC_SLACK, 2.0 * LDC_SLACK)));
 }
 
+/// Did the stages before the samples fit? Otherwise they are all redone.
+#define LDC_FITS(counts) \
+    (counts.tops <= params.top_capacity && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
+
+/// Where a list starts among the build's samples, from its voxel's entry.
+#define ldcListStart(entry) ((entry & 0x7fffffffu) - params.first_sample)
+
 // --- Keys ---
 
 uint ldcTopIndex(uvec3 voxel, uvec3 dims) {

@@ -11,13 +11,13 @@ BUFFER(, 4, uint, voxel_counts)
 
 void main() {
     // Everything is redone when it did not fit: then nothing here may be trusted.
-    if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
+    if (!LDC_FITS(counters[0])) return;
     const uint count = min(counters[0].fragments, params.fragment_capacity);
     const uint i = GLOBAL_INDEX;
     if (i >= count) return;
     const LdcFragment f = fragments[i];
-    const uint node = node_table[top_table[f.top].y * 64u + (f.local >> 6u)] & 0x7fffffffu;
-    const uint voxel = node * 64u + (f.local & 63u);
+    const uint node = node_table[top_table[params.first_top + f.top].y * 64u + (f.local >> 6u)] & 0x7fffffffu;
+    const uint voxel = (node - params.first_node) * 64u + (f.local & 63u);
     fragments[i].top = voxel;
     fragments[i].local = atomicAdd(voxel_counts[voxel], 1u);
 }

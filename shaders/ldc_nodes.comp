@@ -8,22 +8,25 @@ BUFFER(readonly, 1, uvec2, node_masks)
 BUFFER(readonly, 2, uvec2, sums)
 BUFFER(readonly, 3, uint, top_cells)
 BUFFER(writeonly, 4, uint, node_table)
-BUFFER(writeonly, 5, uint, node_cells)
+BUFFER(writeonly, 5, uvec2, node_cells)
+BUFFER(readonly, 6, LdcBody, bodies)
+#include "ldc_bodies.glsl"
 
 void main() {
     const uint lane = gl_LocalInvocationIndex;
-    const uint count = min(counters[0].tops, params.top_capacity);
+    const uint count = min(counters[0].occupied, params.occupied_capacity);
     if (GROUP_INDEX >= count) return;
     const uint top = top_cells[GROUP_INDEX];
     const uvec2 mask = node_masks[top];
     uint entry;
     if (ldcMaskBit(mask, lane)) {
         const uint node = sums[top].y + ldcMaskRank(mask, lane);
-        entry = 0x80000000u | node;
-        const uvec3 cell = ldcTopCell(top, params.grid.dims) * 4u + ldcCell64(lane);
-        if (node < params.node_capacity) node_cells[node] = cell.x | cell.y << 10u | cell.z << 20u;
+        entry = 0x80000000u | (params.first_node + node);
+        const uint body = ldcBodyOfTop(params.first_top + top);
+        const uvec3 cell = ldcTopCell(top - ldcFirstTop(body), bodies[body].grid.dims) * 4u + ldcCell64(lane);
+        if (node < params.node_capacity) node_cells[node] = uvec2(cell.x | cell.y << 10u | cell.z << 20u, body);
     } else {
         entry = ldcGrowBox(mask, lane);
     }
-    node_table[GROUP_INDEX * 64u + lane] = entry;
+    node_table[(params.first_occupied + GROUP_INDEX) * 64u + lane] = entry;
 }

@@ -10,25 +10,28 @@ BUFFER(, 2, LdcCounters, counters)
 BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(writeonly, 5, uint, big_triangles)
+BUFFER(readonly, 6, LdcBody, bodies)
+#include "bounds.glsl"
+#include "ldc_bodies.glsl"
 #include "ldc_emit.glsl"
 
-bool finite(vec3 p) { return abs(p.x) < 1e30 && abs(p.y) < 1e30 && abs(p.z) < 1e30; }
-
 void main() {
-    const uint id = GLOBAL_INDEX;
+    const uint id = params.first_triangle + GLOBAL_INDEX;
     const bool planar = params.planar != 0u;
-    bool valid = id < params.triangles;
+    bool valid = GLOBAL_INDEX < params.triangles && counters[0].tops <= params.top_capacity;
+    const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body, first_top = ldcFirstTop(body);
+    const CubeGrid grid = bodies[body].grid;
     vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);
     if (valid) {
         const uvec3 corners = triangles[id];
         a = positions[corners.x];
         b = positions[corners.y];
         c = positions[corners.z];
-        if (!(finite(a) && finite(b) && finite(c))) {
+        if (!(isBounded(a) && isBounded(b) && isBounded(c))) {
             atomicAdd(counters[0].invalid, 1u);
             valid = false;
         } else {
-            normal = ldcNormal(a, b, c, params.grid.inv_voxel);
+            normal = ldcNormal(a, b, c, grid.inv_voxel);
             if (normal == vec3(0)) {
                 atomicAdd(counters[0].degenerate, 1u);
                 valid = false;
@@ -40,8 +43,8 @@ void main() {
         LdcTriangle t;
         ivec2 lo = ivec2(0), hi = ivec2(-1);
         if (captured) {
-            t = ldcProject(params.grid, a, b, c, normal, axis);
-            const uvec3 dims = uvec3(ldcToLdi(vec3(params.grid.dims), axis));
+            t = ldcProject(grid, a, b, c, normal, axis);
+            const uvec3 dims = uvec3(ldcToLdi(vec3(grid.dims), axis));
             captured = ldcBounds(t, dims.xy, lo, hi);
             const ivec2 size = hi - lo + 1;
             if (captured && uint(size.x) * uint(size.y) > LDC_SMALL_PIXELS) {
@@ -55,11 +58,11 @@ void main() {
         if (captured)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, false, 0u);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, grid.dims, first_top, false, 0u);
         uint position = ldcReserve(count);
         if (count != 0u)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, true, position);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, grid.dims, first_top, true, position);
     }
 }

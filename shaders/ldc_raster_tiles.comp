@@ -10,6 +10,8 @@ BUFFER(, 2, LdcCounters, counters)
 BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(readonly, 5, uvec2, tiles)
+BUFFER(readonly, 6, LdcBody, bodies)
+#include "ldc_bodies.glsl"
 #include "ldc_emit.glsl"
 #include "ldc_big.glsl"
 
@@ -19,10 +21,12 @@ void main() {
     if (GROUP_INDEX >= tile_count) return;
     const uvec2 tile = tiles[GROUP_INDEX];
     const uint id = tile.x;
-    const LdcTriangle t = bigTriangle(id);
+    const uint body = ldcBodyOfTriangle(id >> 2u), first_top = ldcFirstTop(body);
+    const CubeGrid grid = bodies[body].grid;
+    const LdcTriangle t = bigTriangle(grid, id);
     const vec3 reach = ldcReach(t);
     ivec2 lo, hi;
-    ldcBounds(t, uvec3(ldcToLdi(vec3(params.grid.dims), id & 3u)).xy, lo, hi);
+    ldcBounds(t, uvec3(ldcToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
     const ivec2 corner = ivec2(tile.y & 0xffffu, tile.y >> 16u) * 16;
     uint count = 0u, covered = 0u;
     for (uint k = 0u; k < 4u; k++) {
@@ -30,12 +34,12 @@ void main() {
         const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
         if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, planar)) continue;
         covered |= 1u << k;
-        count += ldcEmitPixel(t, pixel, id, false, 0u);
+        count += ldcEmitPixel(t, pixel, id, grid.dims, first_top, false, 0u);
     }
     uint position = ldcReserve(count);
     for (uint k = 0u; k < 4u; k++) {
         if ((covered >> k & 1u) == 0u) continue;
         const uint j = k * 64u + gl_LocalInvocationIndex;
-        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, true, position);
+        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, grid.dims, first_top, true, position);
     }
 }

@@ -6,14 +6,19 @@ layout(local_size_x = 64) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(, 1, uint, occupancy_sums)
+BUFFER(readonly, 2, LdcBody, bodies)
+BUFFER(readonly, 3, LdcCounters, counters)
+#include "ldc_bodies.glsl"
 
 void main() {
-    const uvec3 tops = params.grid.dims >> 4u;
+    const uint axis = params.axis, index = GLOBAL_INDEX;
+    if (index >= counters[0].lines[axis]) return;
+    const uint body = axis == 0u ? ldcBodyOfLineX(index) : (axis == 1u ? ldcBodyOfLineY(index) : ldcBodyOfLineZ(index));
+    const uint line = index - bodies[body].first_line[axis];
+    const uvec3 tops = bodies[body].grid.dims >> 4u;
     const uvec3 strides = uvec3(1u, tops.x, tops.x * tops.y);
-    const uint axis = params.axis, other1 = (axis + 1u) % 3u, other2 = (axis + 2u) % 3u;
-    const uint line = GLOBAL_INDEX;
-    if (line >= tops[other1] * tops[other2]) return;
-    const uint first = (line % tops[other1]) * strides[other1] + (line / tops[other1]) * strides[other2];
+    const uint other1 = (axis + 1u) % 3u, other2 = (axis + 2u) % 3u;
+    const uint first = ldcFirstTop(body) + (line % tops[other1]) * strides[other1] + (line / tops[other1]) * strides[other2];
     uint sum = 0u;
     for (uint i = 0u; i < tops[axis]; i++) {
         const uint at = first + i * strides[axis];

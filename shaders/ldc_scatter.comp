@@ -9,9 +9,9 @@ BUFFER(readonly, 2, LdcFragment, fragments)
 BUFFER(writeonly, 3, uint, unsorted_ids)
 
 void main() {
-    if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
+    if (!LDC_FITS(counters[0])) return;
     const uint count = min(counters[0].fragments, params.fragment_capacity);
     const uint i = GLOBAL_INDEX;
     if (i >= count) return;
-    unsorted_ids[(voxel_table[fragments[i].top] & 0x7fffffffu) + fragments[i].local] = fragments[i].id;
+    unsorted_ids[ldcListStart(voxel_table[params.first_node * 64u + fragments[i].top]) + fragments[i].local] = fragments[i].id;
 }

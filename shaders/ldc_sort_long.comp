@@ -9,12 +9,13 @@ BUFFER(readonly, 0, LdcCounters, counters)
 BUFFER(readonly, 1, uint, voxel_table)
 BUFFER(readonly, 2, uint, voxel_counts)
 BUFFER(readonly, 3, uint, long_lists)
-BUFFER(readonly, 4, uint, node_cells)
+BUFFER(readonly, 4, uvec2, node_cells)
 BUFFER(readonly, 5, vec3, positions)
 BUFFER(readonly, 6, uvec3, triangles)
 BUFFER(, 7, uint, unsorted_ids)
 BUFFER(, 8, uint, sample_ids)
 BUFFER(writeonly, 9, uvec2, samples)
+BUFFER(readonly, 10, LdcBody, bodies)
 #include "ldc_place.glsl"
 
 shared uint heads[256];     // where the next element of a digit goes
@@ -27,7 +28,7 @@ void sortRound(uint start, uint length, uint shift, bool forward) {
     histogram[lane] = 0u;
     barrier();
     for (uint i = lane; i < length; i += 256u) {
-        const uint id = forward ? unsorted_ids[start + i] : sample_ids[start + i];
+        const uint id = forward ? unsorted_ids[start + i] : sample_ids[params.first_sample + start + i];
         atomicAdd(histogram[id >> shift & 255u], 1u);
     }
     barrier();
@@ -45,7 +46,7 @@ void sortRound(uint start, uint length, uint shift, bool forward) {
         const uint batch = min(256u, length - base);
         uint id = 0u, digit = 0u;
         if (lane < batch) {
-            id = forward ? unsorted_ids[start + base + lane] : sample_ids[start + base + lane];
+            id = forward ? unsorted_ids[start + base + lane] : sample_ids[params.first_sample + start + base + lane];
             digit = id >> shift & 255u;
             digits[lane] = digit;
         }
@@ -63,7 +64,7 @@ void sortRound(uint start, uint length, uint shift, bool forward) {
         if (lane < batch) {
             const uint to = start + heads[digit] + before;
             if (forward)
-                sample_ids[to] = id;
+                sample_ids[params.first_sample + to] = id;
             else
                 unsorted_ids[to] = id;
         }
@@ -76,13 +77,13 @@ void sortRound(uint start, uint length, uint shift, bool forward) {
 }
 
 void main() {
-    if (counters[0].tops > params.top_capacity || counters[0].nodes > params.node_capacity) return;
+    if (!LDC_FITS(counters[0])) return;
     // Fragments that found no room are missing from the lists: everything is redone.
     if (counters[0].fragments > params.fragment_capacity) return;
     const uint count = min(counters[0].long_lists, params.long_capacity);
     if (GROUP_INDEX >= count) return;
     const uint voxel = long_lists[GROUP_INDEX], length = voxel_counts[voxel];
-    const uint start = voxel_table[voxel] & 0x7fffffffu;
+    const uint start = ldcListStart(voxel_table[params.first_node * 64u + voxel]);
     for (uint digit = 0u; digit < 4u; digit++) sortRound(start, length, digit * 8u, (digit & 1u) == 0u);
     for (uint j = gl_LocalInvocationIndex; j < length; j += 256u)
         placeSample(start + j, unsorted_ids[start + j], voxel, j + 1u == length);

@@ -6,10 +6,15 @@ PARAMS(LdcParams)
 BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(readonly, 1, uint, occupancy_sums)
 BUFFER(writeonly, 2, uvec2, top_table)
+BUFFER(readonly, 3, LdcBody, bodies)
+BUFFER(readonly, 4, LdcCounters, counters)
+#include "ldc_bodies.glsl"
+
+uint first_top;  // of the body, in the build's tables
 
 uint sumBelow(ivec3 p, ivec3 tops) {
     if (p.x < 0 || p.y < 0 || p.z < 0) return 0u;
-    return occupancy_sums[uint((p.z * tops.y + p.y) * tops.x + p.x)];
+    return occupancy_sums[first_top + uint((p.z * tops.y + p.y) * tops.x + p.x)];
 }
 
 bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
@@ -21,10 +26,12 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 }
 
 void main() {
-    const ivec3 tops = ivec3(params.grid.dims >> 4u);
     const uint i = GLOBAL_INDEX;
-    if (i >= uint(tops.x * tops.y * tops.z) || node_masks[i] != uvec2(0)) return;
-    ivec3 lo = ivec3(ldcTopCell(i, params.grid.dims)), hi = lo;
+    if (i >= counters[0].tops || node_masks[i] != uvec2(0)) return;
+    const uint body = ldcBodyOfTop(params.first_top + i);
+    first_top = ldcFirstTop(body);
+    const ivec3 tops = ivec3(bodies[body].grid.dims >> 4u);
+    ivec3 lo = ivec3(ldcTopCell(i - first_top, bodies[body].grid.dims)), hi = lo;
     int steps[6] = int[](1, 1, 1, 1, 1, 1);
     for (int round = 0; round < 12; round++) {
         bool grown = false;
@@ -53,5 +60,5 @@ void main() {
         if (!grown) break;
     }
     const uvec3 l = uvec3(lo), h = uvec3(hi);
-    top_table[i] = uvec2(l.x | l.y << 10u | l.z << 20u, h.x | h.y << 10u | h.z << 20u);
+    top_table[params.first_top + i] = uvec2(l.x | l.y << 10u | l.z << 20u, h.x | h.y << 10u | h.z << 20u);
 }

@@ -5,11 +5,11 @@ layout(local_size_x = 256) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(writeonly, 1, uvec2, sums)
+BUFFER(readonly, 2, LdcCounters, counters)
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    const uvec3 tops = params.grid.dims >> 4u;
-    if (i >= tops.x * tops.y * tops.z) return;
+    if (i >= min(counters[0].tops, params.top_capacity)) return;
     const uint nodes = ldcMaskCount(node_masks[i]);
     sums[i] = uvec2(nodes != 0u ? 1u : 0u, nodes);
 }

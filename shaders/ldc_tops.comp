@@ -11,17 +11,16 @@ BUFFER(, 4, LdcCounters, counters)
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    const uvec3 tops = params.grid.dims >> 4u;
-    const uint count = tops.x * tops.y * tops.z;
+    const uint count = counters[0].tops;
     if (i >= count) return;
     const uint nodes = ldcMaskCount(node_masks[i]);
     const uvec2 before = sums[i];
     if (nodes != 0u) {
-        top_table[i] = uvec2(0x80000000u, before.x);
-        if (before.x < params.top_capacity) top_cells[before.x] = i;
+        top_table[params.first_top + i] = uvec2(0x80000000u, params.first_occupied + before.x);
+        if (before.x < params.occupied_capacity) top_cells[before.x] = i;
     }
     if (i == count - 1u) {
-        counters[0].tops = before.x + (nodes != 0u ? 1u : 0u);
+        counters[0].occupied = before.x + (nodes != 0u ? 1u : 0u);
         counters[0].nodes = before.y + nodes;
     }
 }

@@ -30,7 +30,7 @@ void main() {
     }
     uint entry;
     if (samples != 0u) {
-        entry = 0x80000000u | (sums[node].x + starts[lane] - samples);
+        entry = 0x80000000u | (params.first_sample + sums[node].x + starts[lane] - samples);
         if (samples > LDC_LONG_LIST) {
             const uint slot = atomicAdd(counters[0].long_lists, 1u);
             if (slot < params.long_capacity) long_lists[slot] = node * 64u + lane;
@@ -39,6 +39,6 @@ void main() {
     } else {
         entry = ldcGrowBox(uvec2(mask[0], mask[1]), lane);
     }
-    voxel_table[node * 64u + lane] = entry;
+    voxel_table[(params.first_node + node) * 64u + lane] = entry;
     if (lane == 63u && node == count - 1u) counters[0].voxels = sums[node].y + ldcMaskCount(uvec2(mask[0], mask[1]));
 }

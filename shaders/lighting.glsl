@@ -4,9 +4,9 @@
 
 // Defined by the shader that includes this: shares of light that arrive.
 /// From light `index`, which lies in `direction`.
-vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle);
+vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from);
 /// From the sky, in the mean over the samples.
-vec3 skyVisibility(Surface s, uint seed, uint triangle);
+vec3 skyVisibility(Surface s, uint seed, SurfaceId from);
 
 /// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
 vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
@@ -45,7 +45,7 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
 }
 
 /// Light from the lamps, the sun and the diffuse sky that a surface sends towards `view`.
-vec3 lightSurface(Surface s, uint triangle, vec3 view, uint seed) {
+vec3 lightSurface(Surface s, SurfaceId from, vec3 view, uint seed) {
     const GpuMaterial m = materials[s.material];
     if ((m.flags & MATERIAL_UNLIT) != 0u) return vec3(0);
     const bool shadows = (frame[0].effects & EFFECT_SHADOW) != 0u;
@@ -61,7 +61,7 @@ vec3 lightSurface(Surface s, uint triangle, vec3 view, uint seed) {
             sum += reflected;
             continue;
         }
-        sum += reflected * lightVisibility(i, s, direction, triangle);
+        sum += reflected * lightVisibility(i, s, direction, from);
     }
     vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
     if (diffuse == vec3(0)) return sum;
@@ -70,7 +70,7 @@ vec3 lightSurface(Surface s, uint triangle, vec3 view, uint seed) {
     diffuse *= 1.0 - (m.roughness < MIRROR_ROUGHNESS ? vec3(fresnelDielectric(cosine, m.ior))
                                                      : environmentBrdf(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), m.roughness, cosine));
     vec3 ambient = environmentIrradiance(s.normal);
-    if ((frame[0].effects & EFFECT_AMBIENT) != 0u) ambient *= skyVisibility(s, seed, triangle);
+    if ((frame[0].effects & EFFECT_AMBIENT) != 0u) ambient *= skyVisibility(s, seed, from);
     return sum + diffuse * ambient;
 }
 

@@ -1,5 +1,5 @@
 #version 460
-layout(location = 0) flat in uint triangle;
-layout(location = 0) out uint color;
+layout(location = 0) flat in uvec2 surface;
+layout(location = 0) out uvec2 color;
 
-void main() { color = triangle; }
+void main() { color = surface; }

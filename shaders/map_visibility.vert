@@ -10,27 +10,28 @@ BUFFER(readonly, 3, uint, triangle_materials)
 BUFFER(readonly, 4, GpuMaterial, materials)
 BUFFER(readonly, 5, uint, triangle_objects)
 BUFFER(readonly, 6, GpuObject, objects)
-layout(location = 0) flat out uint triangle;
+BUFFER(readonly, 7, GpuInstance, instances)
+layout(location = 0) flat out uvec2 surface;  // a SurfaceId
+#include "placed.glsl"
 #include "project.glsl"
 
 bool drawn(vec3 a, vec3 b, vec3 c) {
-    const GpuMaterial m = materials[triangle_materials[triangle]];
+    const GpuMaterial m = materials[triangle_materials[surface.y]];
     const bool transmits = m.transmission > 0.0 && m.metallic < 1.0;
     if (params.shadow != 0u) return !transmits;
-    const uint index = triangle_objects[triangle];
+    const uint index = instances[surface.x].info.first_object + triangle_objects[surface.y];
     const GpuObject object = objects[index];
     // A probe inside another closed object shall not see its inside: of an object whose box it stands in, only front faces
     // count. Of all others both sides do, since an open sheet has no back; so they do where the back can be looked through.
     const bool inside = all(greaterThanEqual(frame[0].eye, object.lower)) && all(lessThanEqual(frame[0].eye, object.upper));
-    const bool back = dot(cross(b - a, c - a), a) >= 0.0;
+    const bool back = dot(cross(b - a, c - a), a) >= 0.0 != (instances[surface.x].mirrored != 0u);
     return index != params.left_out && (transmits || !inside || !back);
 }
 
 void main() {
-    triangle = uint(gl_VertexIndex) / 3u;
-    const uvec3 corners = triangles[triangle];
+    surface = uvec2(gl_InstanceIndex, uint(gl_VertexIndex) / 3u);
     vec3 p[3];
-    for (uint i = 0u; i < 3u; i++) p[i] = positions[corners[i]] - frame[0].eye;
+    placedTriangle(surface.x, surface.y, frame[0].eye, p[0], p[1], p[2]);
     const vec2 shift = (0.5 - params.jitter) * 2.0 / vec2(frame[0].width, frame[0].height);
     // Three equal corners have no area.
     gl_Position = drawn(p[0], p[1], p[2]) ? project(p[uint(gl_VertexIndex) % 3u], shift) : vec4(0, 0, 0, 1);

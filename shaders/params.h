@@ -19,16 +19,35 @@ using glm::vec4;
 
 // --- Building the cube (src/ldc, shaders/ldc_*.comp) ---
 
-/// Parameters of all ldc_* passes.
-struct LdcParams {
-    CubeGrid grid;
+/// One body: triangles that share a cube, in a space of their own.
+struct LdcBody {
+    CubeGrid grid;        ///< written by ldc_grids
+    uint first_triangle;  ///< of the triangle buffer
     uint triangles;
+    uint resolution;      ///< voxels along the longest side, a multiple of 16
+    uint first_top;       ///< in the table of 16x16x16 cells; written by ldc_grids
+    uvec3 first_line;     ///< of ldc_sat_scan along x, y, z, counted over the bodies of a build; written by ldc_grids
+};
+SHARED_SIZE(LdcBody, 60);
+
+/// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the bodies
+/// that were built before.
+struct LdcParams {
+    uint first_body;
+    uint bodies;
+    uint first_triangle;      ///< of the first body
+    uint triangles;           ///< of all bodies of the build
+    uint first_top;           ///< entry of the table of 16x16x16 cells
+    uint first_occupied;      ///< number of an occupied 16x16x16 cell
+    uint first_node;          ///< number of an occupied 4x4x4 node
+    uint first_sample;
     uint planar;              ///< 1: pixel-centre samples with the overlap band; 0: conservative
+    uint top_capacity;        ///< 16x16x16 cells that have room
+    uint occupied_capacity;   ///< of them occupied
+    uint node_capacity;       ///< occupied 4x4x4 nodes that have room
     uint fragment_capacity;
     uint big_capacity;        ///< entries of the queue of large triangles
     uint tile_capacity;       ///< entries of the queue of their 16x16-pixel tiles
-    uint top_capacity;        ///< occupied 16x16x16 cells that have room
-    uint node_capacity;       ///< occupied 4x4x4 nodes that have room
     uint long_capacity;       ///< entries of the queue of long lists
     uint axis;                ///< of ldc_sat_scan
 };
@@ -39,29 +58,34 @@ struct LdcCounters {
     uint fragments;   ///< samples
     uint big;
     uint tiles;
-    uint tops;
-    uint nodes;
+    uint tops;        ///< 16x16x16 cells
+    uint occupied;    ///< of them occupied
+    uint nodes;       ///< occupied 4x4x4 nodes
     uint voxels;      ///< occupied voxels
     uint long_lists;
     uint longest;     ///< samples of the longest list
     uint degenerate;  ///< triangles without area: dropped
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
     uint wrapped;     ///< 1: more fragments than 32 bits count
+    uvec3 lines;      ///< of ldc_sat_scan along x, y, z
 };
-SHARED_SIZE(LdcCounters, 44);
+SHARED_SIZE(LdcCounters, 60);
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
 #define LDC_GROUPS_BIG 0u
 #define LDC_GROUPS_TILES 1u
-#define LDC_GROUPS_TOPS 2u
+#define LDC_GROUPS_OCCUPIED 2u
 #define LDC_GROUPS_NODES 3u
 #define LDC_GROUPS_FRAGMENTS 4u
 #define LDC_GROUPS_LONG 5u
-#define LDC_GROUPS 6u
+#define LDC_GROUPS_TOPS 6u        // 256 to a group
+#define LDC_GROUPS_TOPS_BY_64 7u
+#define LDC_GROUPS_LINES 8u       // three, of 64
+#define LDC_GROUPS 11u
 
 /// One triangle's crossing of one voxel, before it is sorted into its list.
 struct LdcFragment {
-    uint top;    ///< index of the 16^3 cell; after ldc_count: index of the voxel's entry
+    uint top;    ///< of the build's 16^3 cells; after ldc_count: index of the voxel's entry, counted from the build's first
     uint id;     ///< triangle * 4 + axis
     uint local;  ///< voxel inside the 16^3 cell (12 bits: node 6, voxel 6); after ldc_count: slot in its list
 };
@@ -76,6 +100,125 @@ SHARED_SIZE(ScanParams, 8);
 #define SCAN_NO_COUNTER 0xffffffffu
 #define SCAN_BLOCK 1024u
 
+// --- Instances (src/ldc/instances; shaders/instances.comp, tree_*.comp) ---
+
+/// Where something stands: p in its own space is linear * p + position in the world.
+struct GpuTransform {
+    mat3 linear;
+    vec3 position;
+};
+SHARED_SIZE(GpuTransform, 48);
+
+/// What of an instance never changes.
+struct InstanceInfo {
+    uint body;
+    uint first_id;      ///< added to the ids of its triangles
+    uint first_object;  ///< added to the objects of its triangles
+};
+SHARED_SIZE(InstanceInfo, 12);
+
+/// A body placed in the world.
+struct GpuInstance {
+    GpuTransform to_world;
+    InstanceInfo info;
+    uint moved;     ///< 0: to_world is the identity
+    uint mirrored;  ///< 1: the transform turns triangles inside out
+    float voxel;    ///< edge of a voxel in the world (the largest, where the transform is not even)
+};
+SHARED_SIZE(GpuInstance, 72);
+
+struct InstanceParams {
+    uint count;
+    uint padded;  ///< rounded up to a multiple of 8
+};
+SHARED_SIZE(InstanceParams, 8);
+
+/// Parameters of all tree_* passes.
+struct TreeParams {
+    PeelrayTree tree;
+    uint bits;    ///< of each axis of a Morton code
+    uint level;   ///< tree_level: which
+    uint boxes;   ///< of the level
+    uint filled;  ///< the same, filled up to a multiple of 8
+};
+SHARED_SIZE(TreeParams, 56);
+#define TREE_SMALL 1024
+
+/// An instance's place in the order of the hierarchy, before it is sorted.
+struct TreeKey {
+    uint bucket;
+    uint slot;  ///< in its bucket, in the order in which the atomics happened to run
+};
+SHARED_SIZE(TreeKey, 8);
+
+// --- Deforming (src/render/deformer; shaders/deform*.comp) ---
+
+/// A primitive whose vertices are computed anew for every moment.
+struct DeformPiece {
+    uint first_group;      ///< of 64 vertices
+    uint vertices;
+    uint first_rest;       ///< of the vertices at rest
+    uint first_vertex;     ///< of the vertex buffers
+    uint first_triangle;   ///< of the triangle buffer
+    uint body;
+    uint first_joint;      ///< its node, then the joints of its skin
+    uint influences;       ///< joints that pull at a vertex; 0: all follow the node
+    uint first_influence;
+    uint targets;
+    uint first_target;     ///< of each target the positions, then the normals of all vertices
+    uint first_weight;
+    uint flat_shaded;
+};
+SHARED_SIZE(DeformPiece, 52);
+
+struct JointInfluence {
+    uint joint;  ///< of the skin
+    float weight;
+};
+SHARED_SIZE(JointInfluence, 8);
+
+struct DeformParams {
+    uint pieces;
+    uint groups;
+    uint first_triangle;  ///< of all pieces
+    uint triangles;
+};
+SHARED_SIZE(DeformParams, 16);
+
+// --- What is generated (src/render/generators; shaders/water_*.comp, swarm.comp) ---
+
+/// Parameters of all water_* passes: see Water of src/scene/generated.h.
+struct WaterParams {
+    uint cells;
+    float size;
+    float step;         ///< seconds
+    float stiffness;    ///< (speed / spacing)², per second squared
+    float damping;      ///< per second
+    float rest;         ///< seconds from the last step to the moment
+    uint first_vertex;
+    uint body;
+    vec2 drop_at;
+    float drop_strength;
+    float drop_width;
+    uint floats;
+};
+SHARED_SIZE(WaterParams, 52);
+
+/// Something that swims, in a moment.
+struct GpuFloat {
+    uint instance;
+    vec2 at;        ///< x, z
+    float turned;   ///< about the vertical, radians
+    float radius;
+};
+SHARED_SIZE(GpuFloat, 20);
+
+struct SwarmParams {
+    uint bodies;
+    float phase;    ///< of the swarm's period, [0, 1)
+};
+SHARED_SIZE(SwarmParams, 8);
+
 // --- Tracing (shaders/trace.comp) ---
 
 /// A ray in a queue.
@@ -87,23 +230,41 @@ struct Ray {
 };
 SHARED_SIZE(Ray, 32);
 
-/// A hit in a queue; layout of HITS.npy.
+/// A hit in a queue.
 struct Hit {
+    float t;        ///< +inf: a miss
+    uint triangle;  ///< of the triangle buffer; NO_TRIANGLE: a miss
+    uint instance;
+    float u;
+    float v;
+};
+SHARED_SIZE(Hit, 20);
+#define NO_TRIANGLE 0xffffffffu
+
+/// A hit as HITS.npy has it: the triangle counts over the whole scene, in file order.
+struct FileHit {
     float t;
     uint triangle;
     float u;
     float v;
 };
-SHARED_SIZE(Hit, 16);
+SHARED_SIZE(FileHit, 16);
+
+/// A surface that a ray starts on and must not hit.
+struct SurfaceId {
+    uint instance;
+    uint triangle;
+};
+SHARED_SIZE(SurfaceId, 8);
 
 struct TraceParams {
-    CubeGrid grid;
+    PeelrayTree tree;
     uint count;     ///< rays in the queue; with `counted`: room in the queue
     uint counted;   ///< 1: the count is queue[counter]
     uint counter;
-    uint skips;     ///< 1: skip[i] is a triangle that ray i must not hit
+    uint skips;     ///< 1: ray i must not hit skip[i]
 };
-SHARED_SIZE(TraceParams, 48);
+SHARED_SIZE(TraceParams, 56);
 
 // --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
 
@@ -144,7 +305,7 @@ SHARED_SIZE(GpuLight, 52);
 
 /// Everything of a frame that does not change from pass to pass.
 struct Frame {
-    CubeGrid grid;
+    PeelrayTree tree;
     // Camera: ray through the pixel position p: forward + right * (2 p.x/width - 1) + up * (1 - 2 p.y/height).
     vec3 eye;
     float near;          ///< depth 1 of the reversed depth buffer
@@ -166,12 +327,12 @@ struct Frame {
     vec3 sun_radiance;
     uint effects;        ///< EFFECT_*
     vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
-    float surface_offset;  ///< height above its surface, world units, from which a secondary ray counts (planar hits)
+    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (planar hits)
     uint spp;
     uint last_level;     ///< level whose hits spawn no more rays
     float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
 };
-SHARED_SIZE(Frame, 280);
+SHARED_SIZE(Frame, 288);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -7,13 +7,15 @@ PARAMS(LevelParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-BUFFER(readonly, 3, uint, visibility)
+BUFFER(readonly, 3, SurfaceId, visibility)
 BUFFER(writeonly, 4, Ray, rays)
 BUFFER(writeonly, 5, RayState, states)
 BUFFER(writeonly, 6, Hit, hits)
 BUFFER(writeonly, 7, uint, queue)
+BUFFER(readonly, 8, GpuInstance, instances)
 #include "peelray/intersect.glsl"
 #include "camera.glsl"
+#include "placed.glsl"
 #include "shading.glsl"
 
 void main() {
@@ -24,12 +26,13 @@ void main() {
     const Ray ray = cameraRay(vec2(pixel) + params.jitter);
     rays[i] = ray;
     states[i] = RayState(vec3(1), MEDIUM_NONE | RAY_SEES_SUN, hash3(uvec3(pixel, 0u)).x);
-    Hit hit = Hit(uintBitsToFloat(0x7f800000u), 0xffffffffu, 0.0, 0.0);
+    Hit hit = Hit(uintBitsToFloat(0x7f800000u), NO_TRIANGLE, 0u, 0.0, 0.0);
     const bool inside = pixel.x < frame[0].width && pixel.y < frame[0].height;
-    const uint triangle = inside ? visibility[pixel.y * frame[0].width + pixel.x] : 0xffffffffu;
-    if (triangle != 0xffffffffu) {
-        const uvec3 corners = triangles[triangle];
-        const vec3 a = positions[corners.x] - ray.origin, b = positions[corners.y] - ray.origin, c = positions[corners.z] - ray.origin;
+    SurfaceId seen = SurfaceId(0u, NO_TRIANGLE);
+    if (inside) seen = visibility[pixel.y * frame[0].width + pixel.x];
+    if (seen.triangle != NO_TRIANGLE) {
+        vec3 a, b, c;
+        placedTriangle(seen.instance, seen.triangle, ray.origin, a, b, c);
         float t;
         vec2 uv;
         const uint found = peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv);
@@ -45,7 +48,7 @@ void main() {
             uv /= max(1.0, uv.x + uv.y);
             t = max(0.0, dot(a + (b - a) * uv.x + (c - a) * uv.y, ray.direction));
         }
-        hit = Hit(t, triangle, uv.x, uv.y);
+        hit = Hit(t, seen.triangle, seen.instance, uv.x, uv.y);
     }
     hits[i] = hit;
 }

@@ -18,7 +18,7 @@ void main() {
     if (pixel.x >= params.size || pixel.y >= params.size) return;
     const vec3 radiance = nodes[i].radiance;
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
-    const bool covered = hits[i].triangle != 0xffffffffu;
+    const bool covered = hits[i].triangle != NO_TRIANGLE;
     vec4 texel = covered ? vec4(finite ? radiance : vec3(0), 1) : vec4(0);
     const uint at = params.first + pixel.y * params.size + pixel.x;
     if (params.sample_index > 0u) {

@@ -8,14 +8,14 @@ PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
 #include "scene_buffers.glsl"
-BUFFER(readonly, 11, Ray, rays)
-BUFFER(readonly, 12, RayState, states)
-BUFFER(readonly, 13, Hit, hits)
-BUFFER(writeonly, 14, PathNode, nodes)
-BUFFER(, 15, uint, queue)
-BUFFER(writeonly, 16, Ray, next_rays)
-BUFFER(writeonly, 17, RayState, next_states)
-BUFFER(writeonly, 18, uint, next_skip)
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, RayState, states)
+BUFFER(readonly, 14, Hit, hits)
+BUFFER(writeonly, 15, PathNode, nodes)
+BUFFER(, 16, uint, queue)
+BUFFER(writeonly, 17, Ray, next_rays)
+BUFFER(writeonly, 18, RayState, next_states)
+BUFFER(writeonly, 19, SurfaceId, next_skip)
 #include "frame.glsl"
 #include "branches.glsl"
 
@@ -47,12 +47,12 @@ void decide(inout Branch branch, vec3 path_weight, uint effect) {
                     largest(branch.weight * path_weight) >= LEAST_WEIGHT;
 }
 
-void emitRay(uint index, Branch branch, Surface s, uint triangle, vec3 path_weight, uint seed) {
+void emitRay(uint index, Branch branch, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
     if (index >= params.next_capacity) return;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
     next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
-    next_skip[index] = triangle;
+    next_skip[index] = from;
 }
 
 void main() {
@@ -63,18 +63,19 @@ void main() {
     PathNode node = PathNode(vec3(0), NO_CHILD, vec3(0), NO_CHILD, vec3(0));
     Branch reflection = NO_BRANCH, refraction = NO_BRANCH;
     Surface s;
-    uint triangle = 0xffffffffu, slot0 = 0u, slot1 = 0u, seed = 0u;
+    SurfaceId from = SurfaceId(0u, NO_TRIANGLE);
+    uint slot0 = 0u, slot1 = 0u, seed = 0u;
     vec3 path_weight = vec3(0);
     if (valid) {
         const Ray ray = rays[i];
         RayState state = states[i];
         seed = state.seed;
         const Hit hit = hits[i];
-        triangle = hit.triangle;
-        if (triangle == 0xffffffffu) {
+        from = SurfaceId(hit.instance, hit.triangle);
+        if (hit.triangle == NO_TRIANGLE) {
             node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
         } else {
-            s = surfaceAt(triangle, vec2(hit.u, hit.v), ray.direction);
+            s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
             const vec3 lost = transmittance(state.medium, hit.t);
             state.weight *= lost;
             path_weight = state.weight;
@@ -100,11 +101,11 @@ void main() {
     if (!valid) return;
     if (reflection.traced) {
         node.child0 = group_first + slot0;
-        emitRay(node.child0, reflection, s, triangle, path_weight, hash3(uvec3(seed, 0u, params.level)).x);
+        emitRay(node.child0, reflection, s, from, path_weight, hash3(uvec3(seed, 0u, params.level)).x);
     }
     if (refraction.traced) {
         node.child1 = group_first + group_counts[0] + slot1;
-        emitRay(node.child1, refraction, s, triangle, path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+        emitRay(node.child1, refraction, s, from, path_weight, hash3(uvec3(seed, 1u, params.level)).x);
     }
     nodes[i] = node;
 }

@@ -1,4 +1,5 @@
-// The scene's buffers at bindings SCENE_FIRST_BINDING ...; positions and triangles come with cube_fetch.glsl or here.
+// The scene's buffers at bindings SCENE_FIRST_BINDING ...; positions, triangles and instances come with
+// cube_fetch.glsl or here.
 BUFFER(readonly, SCENE_FIRST_BINDING + 0, Frame, frame)
 BUFFER(readonly, SCENE_FIRST_BINDING + 1, GpuMaterial, materials)
 BUFFER(readonly, SCENE_FIRST_BINDING + 2, GpuTexture, texture_infos)
@@ -11,4 +12,5 @@ BUFFER(readonly, SCENE_FIRST_BINDING + 8, vec4, environment)
 #ifdef SCENE_WITH_TRIANGLES
 BUFFER(readonly, SCENE_FIRST_BINDING + 9, vec3, positions)
 BUFFER(readonly, SCENE_FIRST_BINDING + 10, uvec3, triangles)
+BUFFER(readonly, SCENE_FIRST_BINDING + 11, GpuInstance, instances)
 #endif

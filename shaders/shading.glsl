@@ -37,6 +37,9 @@ bool refractRay(vec3 incoming, vec3 normal, float eta, out vec3 refracted) {
     return true;
 }
 
+/// Cosine to a triangle's normal below which a shading normal counts as lying in the triangle's plane.
+const float NORMAL_IN_PLANE = 1e-4;
+
 /// An interpolated normal that the viewer would see from behind is bent until it is just visible.
 vec3 visibleNormal(vec3 normal, vec3 geometric, vec3 to_viewer) {
     const float cosine = dot(normal, to_viewer);

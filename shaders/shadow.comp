@@ -7,14 +7,14 @@ layout(constant_id = 0) const bool planar = false;
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
-#define SCENE_FIRST_BINDING 7
+#define SCENE_FIRST_BINDING 10
 #include "scene_buffers.glsl"
-BUFFER(readonly, 16, Ray, rays)
-BUFFER(readonly, 17, RayState, states)
-BUFFER(readonly, 18, Hit, hits)
-BUFFER(, 19, PathNode, nodes)
-BUFFER(, 20, uint, queue)
-BUFFER(readonly, 21, GpuLight, lights)
+BUFFER(readonly, 19, Ray, rays)
+BUFFER(readonly, 20, RayState, states)
+BUFFER(readonly, 21, Hit, hits)
+BUFFER(, 22, PathNode, nodes)
+BUFFER(, 23, uint, queue)
+BUFFER(readonly, 24, GpuLight, lights)
 #include "peelray/peelray.glsl"
 #include "frame.glsl"
 #include "lighting.glsl"
@@ -27,18 +27,18 @@ uint shadow_rays = 0u, ambient_rays = 0u;  // of this thread
 const uint SHADOW_LAYERS = 16u;
 
 /// Share of the light that arrives along the ray: 0 or 1, or the tint of the glass in between.
-vec3 visibility(Ray leaving, uint triangle) {
+vec3 visibility(Ray leaving, SurfaceId from) {
     PeelrayRay ray = PeelrayRay(leaving.origin, leaving.tmin, leaving.direction, leaving.tmax);
-    if (!glass) return vec3(peelrayTrace(frame[0].grid, ray, triangle, true, planar).triangle == PEELRAY_MISS ? 1.0 : 0.0);
+    uvec2 skip = uvec2(from.instance, from.triangle);
+    if (!glass) return vec3(peelrayTrace(frame[0].tree, ray, skip, true, planar).triangle == PEELRAY_MISS ? 1.0 : 0.0);
     vec3 share = vec3(1);
-    uint skip = triangle;
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
-        const PeelrayHit hit = peelrayTrace(frame[0].grid, ray, skip, false, planar);
+        const PeelrayHit hit = peelrayTrace(frame[0].tree, ray, skip, false, planar);
         if (hit.triangle == PEELRAY_MISS) return share;
         const GpuMaterial m = materials[triangle_materials[hit.triangle]];
         if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
-        const vec2 uv = planar ? cubeWeights(hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;
-        const Surface s = surfaceAt(hit.triangle, uv, ray.direction);
+        const vec2 uv = planar ? cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;
+        const Surface s = surfaceAt(hit.instance, hit.triangle, uv, ray.direction);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         float reflected = fresnelDielectric(clamp(-dot(ray.direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
         if (thin) reflected = 2.0 * reflected / (1.0 + reflected);  // both faces of the wall
@@ -47,19 +47,19 @@ vec3 visibility(Ray leaving, uint triangle) {
         if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
         if (largest(share) < 1.0 / 512.0) return vec3(0);
         ray.tmin = hit.t;
-        skip = hit.triangle;
+        skip = uvec2(hit.instance, hit.triangle);
     }
     return vec3(0);
 }
 
-vec3 lightVisibility(uint index, Surface s, vec3 direction, uint triangle) {
+vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from) {
     shadow_rays++;
     Ray ray = leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
     if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
-    return visibility(ray, triangle);
+    return visibility(ray, from);
 }
 
-vec3 skyVisibility(Surface s, uint seed, uint triangle) {
+vec3 skyVisibility(Surface s, uint seed, SurfaceId from) {
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
     const vec2 random = randomPair(seed, params.sample_index, RANDOM_SKY);
     vec3 t, b;
@@ -67,7 +67,7 @@ vec3 skyVisibility(Surface s, uint seed, uint triangle) {
     const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
     const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
     ambient_rays++;
-    return visibility(leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u)), triangle);
+    return visibility(leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u)), from);
 }
 
 void main() {
@@ -76,10 +76,10 @@ void main() {
     barrier();
     if (i < min(params.capacity, queue[params.level])) {
         const Hit hit = hits[i];
-        if (hit.triangle != 0xffffffffu) {
+        if (hit.triangle != NO_TRIANGLE) {
             const vec3 direction = rays[i].direction;
-            const Surface s = surfaceAt(hit.triangle, vec2(hit.u, hit.v), direction);
-            const vec3 light = lightSurface(s, hit.triangle, -direction, states[i].seed);
+            const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), direction);
+            const vec3 light = lightSurface(s, SurfaceId(hit.instance, hit.triangle), -direction, states[i].seed);
             nodes[i].radiance += light * transmittance(states[i].medium, hit.t);
         }
     }

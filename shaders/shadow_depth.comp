@@ -7,19 +7,21 @@ PARAMS(MapParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-BUFFER(readonly, 3, uint, visibility)
+BUFFER(readonly, 3, SurfaceId, visibility)
 BUFFER(writeonly, 4, float, shadow_depths)
+BUFFER(readonly, 5, GpuInstance, instances)
+#include "placed.glsl"
 
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= params.size * params.size) return;
-    const uint triangle = visibility[i];
+    const SurfaceId seen = visibility[i];
     float depth = uintBitsToFloat(0x7f800000u);
-    if (triangle != 0xffffffffu) {
+    if (seen.triangle != NO_TRIANGLE) {
         const vec2 p = (vec2(i % params.size, i / params.size) + 0.5) * (2.0 / float(params.size)) - 1.0;
         const vec3 offset = frame[0].right * p.x - frame[0].up * p.y, forward = frame[0].forward;
-        const uvec3 corners = triangles[triangle];
-        const vec3 a = positions[corners.x] - frame[0].eye, b = positions[corners.y] - frame[0].eye, c = positions[corners.z] - frame[0].eye;
+        vec3 a, b, c;
+        placedTriangle(seen.instance, seen.triangle, frame[0].eye, a, b, c);
         const vec3 n = cross(b - a, c - a);
         const bool orthographic = frame[0].orthographic != 0u;
         const float facing = dot(n, orthographic ? forward : forward + offset);

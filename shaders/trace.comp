@@ -1,4 +1,4 @@
-// Traces a queue of rays in the cube.
+// Traces a queue of rays in the cubes.
 #version 460
 #include "common.glsl"
 #include "params.h"
@@ -8,10 +8,10 @@ layout(constant_id = 1) const bool planar = false;
 layout(constant_id = 2) const bool precise_edges = false;
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
-BUFFER(readonly, 7, Ray, rays)
-BUFFER(readonly, 8, uint, skip)
-BUFFER(readonly, 9, uint, queue)
-BUFFER(writeonly, 10, Hit, hits)
+BUFFER(readonly, 10, Ray, rays)
+BUFFER(readonly, 11, SurfaceId, skip)
+BUFFER(readonly, 12, uint, queue)
+BUFFER(writeonly, 13, Hit, hits)
 #define PEELRAY_PRECISE precise_edges
 #include "peelray/peelray.glsl"
 
@@ -20,9 +20,10 @@ void main() {
     const uint count = params.counted != 0u ? min(params.count, queue[params.counter]) : params.count;
     if (i >= count) return;
     const Ray ray = rays[i];
-    const PeelrayHit hit = peelrayTrace(params.grid, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax),
-                                        params.skips != 0u ? skip[i] : PEELRAY_MISS, any_hit, planar);
+    uvec2 own = uvec2(PEELRAY_MISS);
+    if (params.skips != 0u) own = uvec2(skip[i].instance, skip[i].triangle);
+    const PeelrayHit hit = peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), own, any_hit, planar);
     vec2 uv = hit.uv;
-    if (planar && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.triangle, ray.origin + hit.t * ray.direction);
-    hits[i] = Hit(hit.t, hit.triangle, uv.x, uv.y);
+    if (planar && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction);
+    hits[i] = Hit(hit.t, hit.triangle, hit.instance, uv.x, uv.y);
 }

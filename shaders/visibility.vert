@@ -1,4 +1,4 @@
-// Primary visibility: every triangle, drawn with its index. Positions relative to the eye, reversed depth.
+// Primary visibility: every triangle of every instance, drawn with both numbers. Positions relative to the eye, reversed depth.
 #version 460
 #include "common.glsl"
 #include "params.h"
@@ -6,13 +6,15 @@ PARAMS(VisibilityParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-layout(location = 0) flat out uint triangle;
+BUFFER(readonly, 3, GpuInstance, instances)
+layout(location = 0) flat out uvec2 surface;  // a SurfaceId
+#include "placed.glsl"
 #include "project.glsl"
 
 void main() {
-    triangle = uint(gl_VertexIndex) / 3u;
-    const uvec3 corners = triangles[triangle];
-    const vec3 p = positions[corners[uint(gl_VertexIndex) % 3u]] - frame[0].eye;
+    surface = uvec2(gl_InstanceIndex, uint(gl_VertexIndex) / 3u);
+    const vec3 p = positions[triangles[surface.y][uint(gl_VertexIndex) % 3u]];
     // The rasteriser samples pixel centres: moving the picture moves the sample.
-    gl_Position = project(p, (0.5 - params.jitter) * 2.0 / vec2(frame[0].width, frame[0].height));
+    gl_Position = project(placedFrom(instances[surface.x].to_world, p, frame[0].eye),
+                          (0.5 - params.jitter) * 2.0 / vec2(frame[0].width, frame[0].height));
 }

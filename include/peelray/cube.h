@@ -1,25 +1,61 @@
-// The layered depth cube's parameters: one text for C++ and GLSL (scalar block layout).
+// The layered depth cubes' parameters: one text for C++ and GLSL (scalar block layout).
 #ifndef PEELRAY_CUBE_H
 #define PEELRAY_CUBE_H
 
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace peelray {
+using glm::mat3;
 using glm::uvec3;
 using glm::vec3;
 using uint = glm::uint;
 #endif
 
-/// Where the cube lies. Voxels are cubes; their number may differ per axis.
+/// Where a cube lies in its body's space. Voxels are cubes; their number may differ per axis.
 struct CubeGrid {
-    vec3 origin;      ///< world position of the lower corner of voxel (0, 0, 0)
-    float voxel;      ///< edge of a voxel, world units
+    vec3 origin;      ///< the lower corner of voxel (0, 0, 0)
+    float voxel;      ///< edge of a voxel
     uvec3 dims;       ///< voxels along x, y, z: multiples of 16, at most 2048
     float inv_voxel;  ///< 1 / voxel
 };
 
+/// A cube placed in the world: p in the world is M * (p - corner) from the lower corner of the cube's first voxel, in the units
+/// of the body's space; x, y and z are the rows of M. In blocks of 16 bytes, which GPUs load at once.
+struct PeelrayInstance {
+    vec3 x;
+    float voxel;      ///< as in CubeGrid
+    vec3 y;
+    float inv_voxel;
+    vec3 z;
+    uint tops;        ///< the grid's dims in 16 voxels: 10 bits each
+    vec3 corner;
+    uint first_top;   ///< the cube's first entry in the table of 16x16x16-voxel cells
+    vec3 origin;      ///< as in CubeGrid
+    uint moved;       ///< 0: M is the identity and corner the grid's origin
+};
+
+/// A box of the hierarchy over the instances, in the world; lower > upper: nothing.
+struct PeelrayBox {
+    vec3 lower;
+    uint instance;  ///< of the lowest level's boxes
+    vec3 upper;
+    uint unused;
+};
+
+/// Where the boxes of the hierarchy lie: box i of a level holds boxes 8 i to 8 i + 7 of the level below. The highest level has
+/// at most 8 boxes; each level is filled up to a multiple of 8.
+#define PEELRAY_TREE_LEVELS 8
+struct PeelrayTree {
+    uint instances;
+    uint levels;  ///< at least 1
+    uint first[PEELRAY_TREE_LEVELS];
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(CubeGrid) == 32);
+static_assert(sizeof(PeelrayInstance) == 80);
+static_assert(sizeof(PeelrayBox) == 32);
+static_assert(sizeof(PeelrayTree) == 40);
 }  // namespace peelray
 #endif
 #endif

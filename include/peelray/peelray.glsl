@@ -1,20 +1,23 @@
-// Tracing rays in a layered depth cube: the `voxel` traversal (docs/frame.md, docs/data.md).
+// Ray traversal of layered depth cubes in the by-voxel order (docs/frame.md, docs/data.md).
 //
 // Binding-free: the including shader supplies the fetches, before the #include:
+//   PeelrayInstance PEELRAY_INSTANCE(uint i)   cubes placed in the world
+//   PeelrayBox PEELRAY_BOX(uint i)    the hierarchy over their boxes
 //   uvec2 PEELRAY_TOP(uint i)         the table of 16x16x16-voxel cells
 //   uint  PEELRAY_NODE(uint i)        64 entries per occupied cell of it: 4x4x4-voxel nodes
 //   uint  PEELRAY_VOXEL(uint i)       64 entries per occupied node: voxels
 //   uvec2 PEELRAY_SAMPLE(uint i)      samples, the list of a voxel in a row
 //   uint  PEELRAY_SAMPLE_ID(uint i)   triangle id * 4 + axis of the LDI
-//   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   world-space corners (`exact` only)
+//   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` only)
 // and may define
 //   PEELRAY_COUNTERS  a uvec4 that counts steps, lists, samples tested, triangles tested
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
-//                     decided in single precision, watertight all the same: no ray slips between two triangles, but one in some
-//                     ten thousand that graze a surface edge-on may see the other of them.
+//                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
+//                     one in some ten thousand that graze a surface edge-on may see the other of them.
 //
-// The data structure is that of irregular grids (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that
-// rasterisation made: every empty cell knows an empty box around it, which a ray leaves in one step.
+// A cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
+// made: every empty cell knows an empty box around it, which a ray leaves in one step. The instances are leaves of a hierarchy
+// of eight boxes a node, in the order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first.
 #ifndef PEELRAY_GLSL
 #define PEELRAY_GLSL
 
@@ -33,6 +36,7 @@ const uint PEELRAY_MISS = 0xffffffffu;
 struct PeelrayHit {
     float t;        ///< in lengths of the ray's direction; +inf: a miss
     uint triangle;  ///< PEELRAY_MISS: a miss
+    uint instance;
     vec2 uv;        ///< barycentric weights of the second and third corner (`exact`)
 };
 
@@ -50,62 +54,64 @@ vec2 peelrayClip(vec3 o, vec3 inv, vec3 size) {
     return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
 }
 
-/// First hit of a ray in the cube with tmin < t < tmax; `any_hit`: some hit. `skip`: a triangle that does not count
-/// (PEELRAY_MISS: none). `planar`: hits on the samples' planes instead of exact hits.
-///
-/// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
-/// components may count as zero.
-PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, bool planar) {
-    PeelrayHit hit = PeelrayHit(uintBitsToFloat(0x7f800000u), PEELRAY_MISS, vec2(0));
-    const vec3 d_abs = abs(ray.direction);
-    const float d_max = max(d_abs.x, max(d_abs.y, d_abs.z));
-    // Written so that a NaN fails.
-    if (!(d_max > 0.0 && d_max < 3e38 && d_abs.x <= d_max && d_abs.y <= d_max && d_abs.z <= d_max)) return hit;
-    const vec3 o_abs = abs(ray.origin);
-    if (!(ray.tmin < ray.tmax && abs(ray.tmin) < 3e38 && o_abs.x < 3e38 && o_abs.y < 3e38 && o_abs.z < 3e38)) return hit;
+/// 2^-e of the largest component of a vector (1 <= largest * result < 2), for scaling without rounding.
+float peelrayScale(float largest) {
+    const int exponent = int((floatBitsToUint(largest) >> 23) & 255u) - 127;
+    return exponent < -126 ? 1.0 / largest : ldexp(1.0, -exponent);
+}
 
-    // Voxel space: position o + s * d, where d is the ray's direction times a power of two (exact), largest component in
-    // [1, 2), and s = t * s_per_t.
-    const int exponent = int((floatBitsToUint(d_max) >> 23) & 255u) - 127;
-    const vec3 d = exponent < -126 ? ray.direction / d_max : ldexp(ray.direction, ivec3(-exponent));
-    const float t_scale = exponent < -126 ? d_max : ldexp(1.0, exponent);  // direction = d * t_scale
-    const float s_per_t = t_scale * grid.inv_voxel;
-    const vec3 inv = vec3(1.0) / vec3(abs(d.x) < 1e-12 ? (d.x < 0.0 ? -1e-12 : 1e-12) : d.x,
-                                      abs(d.y) < 1e-12 ? (d.y < 0.0 ? -1e-12 : 1e-12) : d.y,
-                                      abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
-    const vec3 size = vec3(grid.dims);
+vec3 peelrayInverse(vec3 d) {
+    return vec3(1.0) / vec3(abs(d.x) < 1e-12 ? (d.x < 0.0 ? -1e-12 : 1e-12) : d.x,
+                            abs(d.y) < 1e-12 ? (d.y < 0.0 ? -1e-12 : 1e-12) : d.y,
+                            abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
+}
+
+vec3 peelrayTurn(PeelrayInstance place, vec3 v) { return vec3(dot(place.x, v), dot(place.y, v), dot(place.z, v)); }
+
+/// Nearest hit of a ray in one instance's cube with tmin < t < hit.t replaces `hit`; `any_hit`: some hit. The ray is valid
+/// (peelrayTrace), `skip` a triangle that does not count.
+void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bool planar, inout PeelrayHit hit) {
+    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
+    const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
+    const ivec3 last = ivec3(tops) * 16 - 1;
+    // Voxel space: position o + s * d, where d is the ray's direction there times a power of two (exact), largest component
+    // about 1, and s = t * s_per_t.
+    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
+    const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
+    const vec3 d = turned * scale;
+    const float s_per_t = place.inv_voxel / scale;
+    const vec3 inv = peelrayInverse(d), size = vec3(tops) * 16.0;
 
     // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
-    vec3 start = ray.origin - grid.origin;
-    vec3 o = start * grid.inv_voxel;
+    vec3 start = peelrayTurn(place, ray.origin - place.corner);
+    vec3 o = start * place.inv_voxel;
     vec2 inside = peelrayClip(o, inv, size);
     float s_shift = 0.0;
     if (inside.x > 0.0 || inside.y < 0.0) {
         // To a little before the box: far away the place of entry is known only to some voxels.
         const float rounding = 1e-6 * abs(inside.x) + 1.0;
-        if (!(inside.x <= inside.y + rounding)) return hit;
-        s_shift = inside.x - rounding;
-        const float along = s_shift * grid.voxel;
-        start = vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -grid.origin.x), along, d.x),
-                     peelrayFusedSum(peelrayTwoSum(ray.origin.y, -grid.origin.y), along, d.y),
-                     peelrayFusedSum(peelrayTwoSum(ray.origin.z, -grid.origin.z), along, d.z));
-        o = start * grid.inv_voxel;
+        if (!(inside.x <= inside.y + rounding)) return;
+        const float along = (inside.x - rounding) / s_per_t;
+        s_shift = along * s_per_t;
+        start = peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
+                                        peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
+                                        peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
+        o = start * place.inv_voxel;
         inside = peelrayClip(o, inv, size);
     }
     const float s_min = ray.tmin * s_per_t - s_shift;
-    float s_best = ray.tmax * s_per_t - s_shift;  // the nearest hit so far, or the end of the ray
+    float s_best = hit.t * s_per_t - s_shift;  // the nearest hit so far, or the end of the ray
     const float s_begin = max(s_min, inside.x), s_end = min(s_best, inside.y);
-    if (!(s_begin <= s_end)) return hit;
+    if (!(s_begin <= s_end)) return;
 
     const bvec3 up = greaterThanEqual(d, vec3(0));
     const vec3 o_inv = o * inv;
-    const ivec3 last = ivec3(grid.dims) - 1;
-    const uvec3 tops = grid.dims >> 4u;
     float s = s_begin, s_out = s_begin;
     ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last), lo = cell, hi = cell;
     vec3 exits = vec3(0);
     uint j = 0u;        // the next sample of the cell's list
     bool more = false;  // the list has samples left
+    bool found_one = false;
 
     // One turn: a new cell, or the rest of the last one's list up to the next sample that may be hit, whose triangle is tested
     // then. Triangles are tested here and not in the inner loop, so that neighbouring rays test theirs together.
@@ -115,7 +121,7 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
             // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
             lo = hi = cell;
             const uvec3 top = uvec3(cell) >> 4u;
-            const uvec2 top_entry = PEELRAY_TOP((top.z * tops.y + top.y) * tops.x + top.x);
+            const uvec2 top_entry = PEELRAY_TOP(place.first_top + (top.z * tops.y + top.y) * tops.x + top.x);
             if ((top_entry.x >> 31u) == 0u) {
                 lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
                 hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;
@@ -165,6 +171,7 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
                     if (id != skip) {
                         s_best = s_plane;
                         hit.triangle = id;
+                        found_one = true;
                     }
                 }
             } else {
@@ -187,26 +194,27 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
                 PEELRAY_TRIANGLE(id, a, b, c);
                 float t;
                 vec2 uv;
-                uint found = peelrayIntersect(start, d, a - grid.origin, b - grid.origin, c - grid.origin, t, uv);
-                float s_hit = t * grid.inv_voxel;
+                uint found = peelrayIntersect(start, d, a - place.origin, b - place.origin, c - place.origin, t, uv);
+                float s_hit = t * place.inv_voxel;
 #ifdef PEELRAY_PRECISE
                 if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
-                    const vec2 x = peelrayTwoSum(start.x, grid.origin.x), y = peelrayTwoSum(start.y, grid.origin.y),
-                               z = peelrayTwoSum(start.z, grid.origin.z);
-                    const bool moved = s_shift != 0.0;
-                    found = peelrayIntersectPrecise(moved ? vec3(x.x, y.x, z.x) : ray.origin, moved ? vec3(x.y, y.y, z.y) : vec3(0), d, a, b,
-                                                    c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
-                    s_hit = t * grid.inv_voxel;
+                    const vec2 x = peelrayTwoSum(start.x, place.origin.x), y = peelrayTwoSum(start.y, place.origin.y),
+                               z = peelrayTwoSum(start.z, place.origin.z);
+                    const bool as_given = s_shift == 0.0 && place.moved == 0u;
+                    found = peelrayIntersectPrecise(as_given ? ray.origin : vec3(x.x, y.x, z.x), as_given ? vec3(0) : vec3(x.y, y.y, z.y), d,
+                                                    a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
+                    s_hit = t * place.inv_voxel;
                 }
 #endif
                 if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {
                     s_best = s_hit;
                     hit.triangle = id;
                     hit.uv = uv;
+                    found_one = true;
                 }
             }
         }
-        if (any_hit && hit.triangle != PEELRAY_MISS) break;
+        if (any_hit && found_one) break;
 
         if (!more) {
             if (s_out >= min(s_end, s_best)) break;
@@ -226,8 +234,115 @@ PeelrayHit peelrayTrace(CubeGrid grid, PeelrayRay ray, uint skip, bool any_hit, 
             if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, last))) break;
         }
     }
-    if (hit.triangle != PEELRAY_MISS) hit.t = (s_best + s_shift) / s_per_t;
+    if (found_one) {
+        hit.t = (s_best + s_shift) / s_per_t;
+        hit.instance = instance;
+    }
+}
+
+/// Where a ray enters a box of the hierarchy, as an integer of the same order; PEELRAY_MISS: it does not, before `t_max`.
+uint peelrayEnter(PeelrayBox box, vec3 origin, vec3 inv, float t_min, float t_max) {
+    const vec3 a = (box.lower - origin) * inv, b = (box.upper - origin) * inv;
+    const vec3 near = min(a, b), far = max(a, b);
+    float enter = max(near.x, max(near.y, near.z)), leave = min(far.x, min(far.y, far.z));
+    // Far away both are known to some share of themselves only.
+    enter -= 2e-6 * abs(enter);
+    leave += 2e-6 * abs(leave);
+    enter = max(enter, t_min);
+    // Written so that a NaN (a ray in a face of the box) passes.
+    if (box.lower.x > box.upper.x || enter > leave || enter > t_max) return PEELRAY_MISS;
+    const uint bits = floatBitsToUint(enter);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+/// Which of the eight boxes from `first` on a ray meets, nearest first: three bits each, their number in bits 24 to 27.
+uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
+    uint keys[8];
+    uint count = 0u;
+    for (uint i = 0u; i < 8u; i++) {
+        const uint key = peelrayEnter(PEELRAY_BOX(first + i), origin, inv, t_min, t_max);
+        count += key != PEELRAY_MISS ? 1u : 0u;
+        keys[i] = (key & ~7u) | i;  // misses stay last
+    }
+#define PEELRAY_SWAP(i, j)                            \
+    {                                                 \
+        const uint smaller = min(keys[i], keys[j]);   \
+        keys[j] = max(keys[i], keys[j]);              \
+        keys[i] = smaller;                            \
+    }
+    // Batcher's network of 19 exchanges.
+    PEELRAY_SWAP(0, 1) PEELRAY_SWAP(2, 3) PEELRAY_SWAP(4, 5) PEELRAY_SWAP(6, 7)
+    PEELRAY_SWAP(0, 2) PEELRAY_SWAP(1, 3) PEELRAY_SWAP(4, 6) PEELRAY_SWAP(5, 7)
+    PEELRAY_SWAP(1, 2) PEELRAY_SWAP(5, 6) PEELRAY_SWAP(0, 4) PEELRAY_SWAP(3, 7)
+    PEELRAY_SWAP(1, 5) PEELRAY_SWAP(2, 6)
+    PEELRAY_SWAP(1, 4) PEELRAY_SWAP(3, 6)
+    PEELRAY_SWAP(2, 4) PEELRAY_SWAP(3, 5)
+    PEELRAY_SWAP(3, 4)
+#undef PEELRAY_SWAP
+    uint word = count << 24u;
+    for (uint i = 0u; i < 8u; i++) word |= (keys[i] & 7u) << (3u * i);
+    return word;
+}
+
+/// First hit of a ray in all instances with tmin < t < tmax; `any_hit`: some hit. `skip`: instance and triangle that do not
+/// count (PEELRAY_MISS: none). `planar`: hits on the samples' planes instead of exact hits.
+///
+/// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
+/// components may count as zero.
+PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, bool any_hit, bool planar) {
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    const PeelrayHit miss = PeelrayHit(infinity, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
+    const vec3 d_abs = abs(ray.direction);
+    const float d_max = max(d_abs.x, max(d_abs.y, d_abs.z));
+    // Written so that a NaN fails.
+    if (!(d_max > 0.0 && d_max < 3e38 && d_abs.x <= d_max && d_abs.y <= d_max && d_abs.z <= d_max)) return miss;
+    const vec3 o_abs = abs(ray.origin);
+    if (!(ray.tmin < ray.tmax && abs(ray.tmin) < 3e38 && o_abs.x < 3e38 && o_abs.y < 3e38 && o_abs.z < 3e38)) return miss;
+
+    // From here on t counts in lengths of a direction whose largest component is in [1, 2).
+    const float scale = peelrayScale(d_max);
+    ray.direction *= scale;
+    ray.tmin /= scale;
+    ray.tmax /= scale;
+    PeelrayHit hit = miss;
+    hit.t = ray.tmax;
+    const vec3 inv = peelrayInverse(ray.direction);
+    uint waiting[PEELRAY_TREE_LEVELS];  // what is left of the higher levels, as peelrayMeet gives it
+    uint level = tree.levels - 1u, group = 0u;
+    // A single instance needs no boxes: it is the one child.
+    bool enters = tree.instances > 1u;
+    uint word = 1u << 24u;
+    while (true) {
+        if (enters) word = peelrayMeet(tree.first[level] + group * 8u, ray.origin, inv, ray.tmin, hit.t);
+        enters = false;
+        if ((word >> 24u) == 0u) {
+            level++;
+            if (level >= tree.levels) break;
+            word = waiting[level];
+            group >>= 3u;
+            continue;
+        }
+        const uint index = group * 8u + (word & 7u);
+        word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu);
+        const PeelrayBox box = PEELRAY_BOX(tree.first[level] + index);
+        // A hit found in between may lie before it; then it lies before all that are left of this group.
+        if (tree.instances > 1u && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) {
+            word = 0u;
+            continue;
+        }
+        if (level > 0u) {
+            waiting[level] = word;
+            level--;
+            group = index;
+            enters = true;
+            continue;
+        }
+        peelrayTraceCube(box.instance, ray, skip.x == box.instance ? skip.y : PEELRAY_MISS, any_hit, planar, hit);
+        if (any_hit && hit.triangle != PEELRAY_MISS) break;
+    }
+    hit.t = hit.triangle == PEELRAY_MISS ? infinity : hit.t * scale;
     return hit;
 }
+
 
 #endif

@@ -2,8 +2,6 @@
 
 #include <csignal>
 
-#include "base/error.h"
-
 namespace peelray {
 namespace {
 
@@ -23,7 +21,7 @@ void watch_interrupts() {
 }
 
 void check_interrupt() {
-    if (interrupted) fail("interrupted: nothing was written; run it again");
+    if (interrupted) throw Interrupted("interrupted: nothing was written; run it again");
 }
 
 }  // namespace peelray

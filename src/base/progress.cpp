@@ -4,14 +4,27 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace peelray {
 
 using Clock = std::chrono::steady_clock;
 
-Progress::Progress(std::string label, double total)
-    : label_(std::move(label)), total_(total), terminal_(isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
+/// "9 s", "12 min", "3 h 20 min": as exact as a guess deserves.
+static std::string duration(double seconds) {
+    if (seconds < 120) return fmt::format("{:.0f} s", seconds);
+    const int minutes = static_cast<int>(std::min(seconds / 60, 1e8));
+    return minutes < 120 ? fmt::format("{} min", minutes) : fmt::format("{} h {} min", minutes / 60, minutes % 60);
+}
+
+Progress::Progress(std::string label, double total, std::string unit)
+    : label_(std::move(label)),
+      unit_(std::move(unit)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO)),
+      start_(Clock::now()),
+      last_(start_) {}
 
 Progress::~Progress() {
     if (drawn_) fmt::print(stderr, "\r\033[K");
@@ -27,8 +40,11 @@ void Progress::update(double done) {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const int filled = static_cast<int>(share * 30);
     const double left = share > 0 ? elapsed * (1 - share) / share : 0;
-    fmt::print(stderr, "\r\033[K{} [{}{}] {:.0f} %, {:.0f} s left", label_, std::string(filled, '#'),
-               std::string(30 - filled, ' '), share * 100, left);
+    const std::string state = unit_.empty() ? fmt::format("{:.0f} %", share * 100)
+                                            : fmt::format("{:.0f}/{:.0f} {}, {:.3g} {}/s", std::floor(done), total_,
+                                                          unit_, done / elapsed, unit_);
+    fmt::print(stderr, "\r\033[K{} [{}{}] {}, {} left", label_, std::string(filled, '#'), std::string(30 - filled, ' '),
+               state, duration(left));
     std::fflush(stderr);
 }
 

@@ -7,10 +7,11 @@
 namespace peelray {
 
 /// Draws "label [#####     ] 42 %, 3 s left" on standard error while work goes on; nothing if that is no terminal,
-/// or if the work is done within half a second.
+/// or if the work is done within half a second. With a unit it counts: "label [##   ] 12/40 frames, 3.1 frames/s, 9 s
+/// left".
 class Progress {
   public:
-    Progress(std::string label, double total);
+    Progress(std::string label, double total, std::string unit = "");
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -19,7 +20,7 @@ class Progress {
     void update(double done);
 
   private:
-    std::string label_;
+    std::string label_, unit_;
     double total_;
     bool terminal_;
     bool drawn_ = false;

@@ -158,7 +158,7 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
         const bool cpu = entry.tracer == "reference";
         facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s["frame_ms"]));
         if (s.value("build_ms", 0.0) > 0)
-            facts.emplace_back(cpu ? "hierarchy" : "of which the cube", ms(s["build_ms"]));
+            facts.emplace_back(cpu ? "hierarchy" : "of which the cubes", ms(s["build_ms"]));
     }
     if (s.contains("rays")) {
         uint64_t secondary = 0;
@@ -168,9 +168,10 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     }
     if (s.contains("ldc")) {
         const Json& cube = s["ldc"];
-        facts.emplace_back("cube", fmt::format("{}³, {} hits", cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
+        facts.emplace_back("cubes", fmt::format("{} of up to {}³, {} hits", cube["count"].get<uint32_t>(), cube["n"].get<uint32_t>(),
+                                               s["hit"].get<std::string>()));
         facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
-        facts.emplace_back("cube in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
+        facts.emplace_back("cubes in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
     }
     if (s.contains("cubemap")) {
         const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];
@@ -202,7 +203,7 @@ Json json_of(const CompareArguments& a, const Report& report, const std::vector<
                  {"command", report.command},
                  {"commit", build_commit()},
                  {"image", {a.size.x, a.size.y}},
-                 {"triangles", scene.geometry.triangles.size()},
+                 {"triangles", scene.triangles},
                  {"reference", entries[report.reference].name},
                  {"notes", report.notes}};
     for (size_t i = 0; i < entries.size(); i++) {
@@ -264,11 +265,11 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
     report.title = a.scene;
     report.command = compare_command(a);
     report.reference = choose_reference(entries);
-    report.facts = {{"triangles", fmt::format("{}", scene.geometry.triangles.size())},
+    report.facts = {{"triangles", fmt::format("{}", scene.triangles)},
                     {"picture", fmt::format("{} × {}, {} sample{} per pixel, {} bounces", a.size.x, a.size.y, a.spp,
                                             a.spp == 1 ? "" : "s", a.bounces)},
                     {"program", fmt::format("peelray {}", build_commit())}};
-    if (!is_reflective(scene.scene, scene.geometry, a.spp))
+    if (!is_reflective(scene.scene, a.spp))
         report.notes.push_back(
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
     const Entry& reference = entries[report.reference];
@@ -323,9 +324,9 @@ void run_compare(const CompareArguments& a) {
         if (same > 1) given.back().name += fmt::format(" ({})", same);
     }
 
-    const PreparedScene scene = prepare_scene(a);
+    PreparedScene scene = prepare_scene(a);
     watch_interrupts();
-    PictureMaker maker(scene, a.device);
+    PictureMaker maker(scene, a);
     for (Entry& entry : entries) render(entry, maker, settings_of(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);

@@ -1,4 +1,6 @@
 // `peelray info` and `peelray devices`.
+#include <cmath>
+
 #include "base/error.h"
 #include "cli/program.h"
 #include "gpu/device.h"
@@ -70,7 +72,8 @@ void run_info(const std::string& name) {
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());
     for (const Animation& animation : scene.animations)
-        fmt::print("  {}: {:.3g} s\n", named(animation.name), animation.duration);
+        fmt::print("  {}: {}\n", named(animation.name),
+                   std::isinf(animation.duration) ? "without end" : fmt::format("{:.3g} s", animation.duration));
     fmt::print("extensions used           {}\n", joined(scene.extensions_used));
     fmt::print("extensions without effect {}\n", joined(scene.extensions_unsupported));
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);

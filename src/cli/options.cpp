@@ -122,14 +122,9 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
         ->type_name("SECONDS")
         ->group(view);
     app.add_option("--animation", a.animation,
-                   "which one, see 'peelray info SCENE', or all at once; default: the first, with --time")
+                   "which one, see 'peelray info SCENE', or all at once; default: the first, with --time or --frames")
         ->type_name("NAME|N|all")
         ->group(view);
-    app.add_option("--frames", a.frames, "frames of the animation (not built yet)")
-        ->type_name("A:B")
-        ->excludes("--time")
-        ->group(view);
-    add_number<double>(app, "--fps", a.fps, "frames per second (not built yet)")->group(view);
 
     const char* light = "Light";
     CLI::Option* env = app.add_option("--env", a.env, "environment map, equirectangular .hdr or .exr")
@@ -180,18 +175,65 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
                          "for measuring: 2 or more frames after a first one that warms up; times are medians")
         ->default_str("1")
         ->group("More output");
+    app.add_flag("--rebuild", a.rebuild,
+                 "for measuring: every cube anew in every frame, as if everything changed its shape")
+        ->group("More output");
     add_device_options(app, a.device);
 }
 
 }  // namespace
 
+namespace {
+
+/// The options that only several pictures in a row have.
+constexpr const char* kSequenceOptions[] = {"--frames", "--turntable", "--fps", "--shard", "--resume"};
+
+void add_sequence_options(CLI::App& app, SequenceArguments& a) {
+    const char* group = "Several frames";
+    add_parsed(
+        app, "--frames", a.frames, parse_frames, "a range of frames A:B, such as 0:48",
+        "the frames A, A+1, ..., B-1 of the animation (without B); frame k shows the moment k/F seconds. The output "
+        "is then a name with one number, such as frame_%05d.exr, or a video, .mp4 or .webm")
+        ->type_name("A:B")
+        ->group(group);
+    add_number<double>(app, "--fps", a.fps, "frames per second")->type_name("F")->default_str("30")->group(group);
+    add_number<uint32_t>(app, "--turntable", a.turntable,
+                         "N frames in which the camera goes once round the vertical line through its look point; all "
+                         "else stands at --time or at rest, with --animation or --fps the animation runs")
+        ->group(group);
+    add_parsed(app, "--shard", a.shard, parse_shard, "a part i/n, such as 0/4",
+               "only every n-th frame, from the i-th of the range on (i from 0): one of n runs that share the work")
+        ->type_name("i/n")
+        ->group(group);
+    app.add_flag("--resume", a.resume, "go on with a run that ended early: leave the frames alone that it finished")
+        ->group(group);
+}
+
+/// Makes `app` say where several frames are to be had.
+void refuse_sequence_options(CLI::App& app) {
+    for (const std::string name : kSequenceOptions)
+        app.add_option_function<std::vector<std::string>>(
+               name,
+               [name](const std::vector<std::string>&) {
+                   throw CLI::ValidationError(
+                       name, "a comparison shows one moment (--time); several frames are for 'peelray render'");
+               })
+            ->expected(0, 1)
+            ->group("");
+}
+
+}  // namespace
+
 void add_render(CLI::App& program, RenderArguments& a) {
-    CLI::App& app = *program.add_subcommand("render", "Render a scene to a picture");
+    CLI::App& app = *program.add_subcommand("render", "Render a scene to a picture, several or a video");
     app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
-    app.add_option("-o,--output", a.output, "picture to write: .png (tone-mapped sRGB), .exr or .hdr (linear radiance)")
+    app.add_option("-o,--output", a.output,
+                   "picture to write: .png (tone-mapped sRGB), .exr or .hdr (linear radiance); for several frames see "
+                   "--frames")
         ->required()
         ->type_name("FILE");
     add_picture_options(app, a, false);
+    add_sequence_options(app, a.sequence);
     const char* output = "More output";
     add_parsed(app, "--aov", a.aovs, parse_aovs, "a list out of depth,normal,albedo,position,triangle,material, or all",
                "also write these to NAME.KIND.exr beside NAME.png: a list out of "
@@ -203,7 +245,9 @@ void add_render(CLI::App& program, RenderArguments& a) {
                "\nExamples:\n"
                "  peelray render builtin:teapots -o teapots.png --spp 16\n"
                "  peelray render model.glb -o picture.png --env studio.hdr --eye 2,1,3 --look 0,0.5,0\n"
-               "  peelray render bunny.off -o mirror.png --material mirror --floor --stats stats.json");
+               "  peelray render bunny.off -o mirror.png --material mirror --floor --stats stats.json\n"
+               "  peelray render walk.glb -o walk.mp4 --frames 0:90 --floor\n"
+               "  peelray render bunny.off -o turn_%03d.png --turntable 120 --resume");
 }
 
 CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
@@ -214,6 +258,7 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
         ->required()
         ->type_name("FILE.html");
     add_picture_options(app, a, true);
+    refuse_sequence_options(app);
     const char* group = "Comparison";
     add_parsed(app, "--tracers", a.tracers, parse_tracers, "a list out of cubemap,ldc,reference,none,khr, each once",
                "who renders, a list out of cubemap,ldc,reference,none,khr (khr: not built yet)")

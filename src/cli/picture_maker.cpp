@@ -1,5 +1,8 @@
 #include "cli/picture_maker.h"
 
+#include <optional>
+#include <utility>
+
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
@@ -10,36 +13,81 @@
 
 namespace peelray {
 
-PictureMaker::PictureMaker(const PreparedScene& scene, const DeviceArguments& device)
-    : scene_(scene), arguments_(device) {}
+#ifndef PEELRAY_WITH_REFERENCE
+static constexpr char kNoReference[] =
+    "this program was built without the reference (PEELRAY_REFERENCE=OFF): use --tracer ldc";
+#endif
+
+PictureMaker::PictureMaker(PreparedScene& scene, const PictureArguments& arguments)
+    : scene_(scene), arguments_(arguments) {}
 
 PictureMaker::~PictureMaker() = default;
 
-MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings) {
-    settings.camera = scene_.camera;
-    if (tracer == "reference") return make_reference(settings);
-    if (tracer == "cubemap" && settings.ambient)
-        print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
-    settings.tracer = tracer == "cubemap" ? Tracer::cubemap : tracer == "none" ? Tracer::none : Tracer::ldc;
-    return make_on_gpu(settings);
+Device& PictureMaker::device() {
+    const DeviceArguments& a = arguments_.device;
+    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{a.device, a.validate});
+    return *device_;
 }
 
-MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
-    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{arguments_.device, arguments_.validate});
-    // Each picture has a renderer of its own: what one needed must not count as another's memory.
-    device_->reset_peak();
-    Renderer renderer(*device_, scene_.scene, scene_.geometry, scene_.environment);
-    Progress progress("rendering", 1);
-    RenderResult result = renderer.render(settings, [&](double share) {
+std::string PictureMaker::renderer_name(const std::string& tracer) {
+    if (tracer != "reference") return device().info().name;
+#ifdef PEELRAY_WITH_REFERENCE
+    return reference_version();
+#else
+    fail(kNoReference);
+#endif
+}
+
+MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings, const Moment& moment,
+                               const std::function<void(double)>& progress) {
+    if (moment.time) move_to(scene_, arguments_, *moment.time);
+    settings.camera = turned(scene_.camera, moment.turn);
+    settings.bounds = scene_.bounds;
+    std::optional<Progress> bar;
+    if (!progress) bar.emplace(tracer == "reference" ? "ray tracing" : "rendering", 1);
+    const auto report = [&](double share) {
         check_interrupt();
-        progress.update(share);
-    });
+        bar ? bar->update(share) : progress(share);
+    };
+    if (tracer == "reference") return make_reference(settings, report);
+    if (tracer == "cubemap" && settings.ambient && !std::exchange(noted_, true))
+        print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
+    settings.tracer = tracer == "cubemap" ? Tracer::cubemap : tracer == "none" ? Tracer::none : Tracer::ldc;
+    return make_on_gpu(settings, report);
+}
+
+/// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another, since
+/// what one needed must not count as another's memory.
+Renderer& PictureMaker::renderer_for(const RenderSettings& settings) {
+    const Kind kind{settings.tracer, settings.hit_auto, settings.hit};
+    if (!renderer_ || !(kind == kind_)) {
+        renderer_.reset();
+        device().reset_peak();
+        // Taken apart as it is in the beginning: where a picture's moment lies must not shape its cubes.
+        if (!scene_.animation.empty()) animate(scene_.scene, scene_.animation, 0);
+        const Assembly assembly = assemble(scene_.scene, motion_of(scene_.scene, scene_.animation));
+        if (scene_.time) animate(scene_.scene, scene_.animation, *scene_.time);
+        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene, assembly, scene_.environment);
+        kind_ = kind;
+        posed_ = scene_.time;
+    }
+    if (posed_ != scene_.time) renderer_->pose(scene_.scene);
+    posed_ = scene_.time;
+    // Cube maps stand in the middle of objects, whose boxes the CPU knows.
+    if (settings.tracer == Tracer::cubemap) simulate(scene_.scene);
+    return *renderer_;
+}
+
+MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std::function<void(double)>& progress) {
+    RenderResult result = renderer_for(settings).render(settings, progress);
     device_->check_validation();
     MadePicture made;
     const RenderStats& s = result.stats;
-    made.stats = render_stats(*device_, result, scene_.geometry);
+    made.stats = render_stats(*device_, result, scene_.triangles, scene_.bounds);
     made.device = device_->info().name;
-    if (s.ldc) made.summary = fmt::format(", cube {} ({})", s.ldc, s.hit == HitTest::exact ? "exact" : "planar");
+    if (s.cubes.bodies)
+        made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
+                                   s.cubes.resolution, s.hit == HitTest::exact ? "exact" : "planar");
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
                                    s.maps.shadows.maps);
@@ -51,16 +99,12 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings) {
     return made;
 }
 
-MadePicture PictureMaker::make_reference(const RenderSettings& settings) {
+MadePicture PictureMaker::make_reference(const RenderSettings& settings, const std::function<void(double)>& progress) {
 #ifdef PEELRAY_WITH_REFERENCE
-    Progress progress("ray tracing", 1);
-    return reference_picture(scene_, settings, [&](double share) {
-        check_interrupt();
-        progress.update(share);
-    });
+    return reference_picture(scene_, settings, progress);
 #else
-    (void)settings;
-    fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use --tracer ldc");
+    (void)settings, (void)progress;
+    fail(kNoReference);
 #endif
 }
 

@@ -1,6 +1,7 @@
 // Pictures of one scene by any tracer.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -16,23 +17,45 @@ struct MadePicture {
     std::string summary;           ///< cube and times, for a reader of the terminal; may be empty
 };
 
+/// When and from where a picture is seen.
+struct Moment {
+    std::optional<double> time;  ///< of the animation, seconds; none: as the scene stands
+    double turn = 0;             ///< how far the camera went around its look point, see turned()
+};
+
 /// Opens the device when a tracer first needs one and keeps it from picture to picture.
 class PictureMaker {
   public:
-    /// Both must outlive it.
-    PictureMaker(const PreparedScene& scene, const DeviceArguments& device);
+    /// Both must outlive it. Pictures move the scene to their moments.
+    PictureMaker(PreparedScene& scene, const PictureArguments& arguments);
     ~PictureMaker();
 
-    /// Throws Error: no device, impossible settings, an interrupt, a validation message.
-    MadePicture make(const std::string& tracer, RenderSettings settings);
+    /// Throws Error: no device, impossible settings, an interrupt, a validation message. `progress` is told the share
+    /// done, [0, 1]; without it a bar of its own is drawn.
+    MadePicture make(const std::string& tracer, RenderSettings settings, const Moment& moment = {},
+                     const std::function<void(double)>& progress = {});
+
+    /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
+    std::string renderer_name(const std::string& tracer);
 
   private:
-    MadePicture make_on_gpu(const RenderSettings& settings);
-    MadePicture make_reference(const RenderSettings& settings);
+    Device& device();
+    Renderer& renderer_for(const RenderSettings& settings);
+    MadePicture make_on_gpu(const RenderSettings& settings, const std::function<void(double)>& progress);
+    MadePicture make_reference(const RenderSettings& settings, const std::function<void(double)>& progress);
 
-    const PreparedScene& scene_;
-    const DeviceArguments& arguments_;
+    PreparedScene& scene_;
+    const PictureArguments& arguments_;
     std::unique_ptr<Device> device_;
+    std::unique_ptr<Renderer> renderer_;
+    struct Kind {
+        Tracer tracer;
+        bool hit_auto;
+        HitTest hit;
+        bool operator==(const Kind&) const = default;
+    } kind_{};
+    std::optional<double> posed_;  ///< the moment that the renderer is in
+    bool noted_ = false;  ///< said what a tracer cannot do
 };
 
 }  // namespace peelray

@@ -33,14 +33,14 @@ const Camera& find_camera(const Scene& scene, const std::string& name) {
     fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
 }
 
-Camera choose_camera(const PictureArguments& a, const Scene& scene, const Geometry& geometry, float aspect) {
-    Camera camera = frame_box(geometry.lower, geometry.upper, aspect);
+Camera choose_camera(const PictureArguments& a, const Scene& scene, const Box& box) {
+    Camera camera = frame_box(box.lower, box.upper, float(a.size.x) / float(a.size.y));
     if (!a.camera.empty())
         camera = find_camera(scene, a.camera);
     else if (!a.eye && !a.look && !scene.cameras.empty())
         camera = scene.cameras.front();
     if (a.eye || a.look) camera.orthographic_height = 0;
-    if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (geometry.lower + geometry.upper));
+    if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (box.lower + box.upper));
     if (a.eye) camera.eye = *a.eye;
     if (a.up) camera.up = *a.up;
     if (a.fov) {
@@ -51,7 +51,7 @@ Camera choose_camera(const PictureArguments& a, const Scene& scene, const Geomet
 }
 
 /// --material: what a file without materials of its own is good for.
-void override_material(Scene& scene, const std::string& name, const Geometry& geometry) {
+void override_material(Scene& scene, const std::string& name, const Box& box) {
     Material material;
     material.name = name;
     if (name == "mirror") {
@@ -63,7 +63,7 @@ void override_material(Scene& scene, const std::string& name, const Geometry& ge
         material.transmission = 1;
         material.thickness = 1;
         material.attenuation_color = glm::vec3(0.75f, 0.92f, 0.85f);
-        material.attenuation_distance = 0.5f * glm::length(geometry.upper - geometry.lower);
+        material.attenuation_distance = 0.5f * glm::length(box.upper - box.lower);
     } else {
         material.base_color = glm::vec3(0.62f, 0.52f, 0.44f);
         material.roughness = 0.9f;
@@ -71,32 +71,40 @@ void override_material(Scene& scene, const std::string& name, const Geometry& ge
     for (Material& each : scene.materials) each = material;
 }
 
-/// --floor: two triangles just below the scene.
-void add_floor(Scene& scene, Geometry& geometry) {
-    const glm::vec3 size = geometry.upper - geometry.lower, centre = 0.5f * (geometry.lower + geometry.upper);
-    const float half = 1.5f * std::max({size.x, size.y, size.z}),
-                y = geometry.lower.y - 1e-4f * std::max({size.x, size.y, size.z});
+/// --floor: two triangles just below the box, the last of the scene. Returns the box with it.
+Box add_floor(Scene& scene, const Box& box) {
+    const glm::vec3 size = box.upper - box.lower, centre = 0.5f * (box.lower + box.upper);
+    const float longest = std::max({size.x, size.y, size.z}), half = 1.5f * longest, y = box.lower.y - 1e-4f * longest;
     Material material;
     material.name = "floor";
     material.base_color = glm::vec3(0.35f, 0.36f, 0.38f);
     material.roughness = 0;
     material.ior = 1.8f;
-    scene.materials.push_back(material);
-    const uint32_t first = uint32_t(geometry.positions.size());
-    geometry.objects.push_back({uint32_t(geometry.triangles.size()), 2});
+    Primitive primitive;
+    Box with_floor = box;
     for (int i = 0; i < 4; i++) {
-        const glm::vec3 p(centre.x + (i == 1 || i == 2 ? half : -half), y, centre.z + (i >= 2 ? half : -half));
-        geometry.positions.push_back(p);
-        geometry.normals.push_back({0, 1, 0});
-        geometry.uvs.push_back({0, 0});
-        if (!geometry.colors.empty()) geometry.colors.push_back(glm::vec4(1));
-        geometry.lower = glm::min(geometry.lower, p);
-        geometry.upper = glm::max(geometry.upper, p);
+        primitive.positions.emplace_back(centre.x + (i == 1 || i == 2 ? half : -half), y,
+                                         centre.z + (i >= 2 ? half : -half));
+        with_floor.add(primitive.positions.back());
     }
-    for (const glm::uvec3& t : {glm::uvec3(0, 2, 1), glm::uvec3(0, 3, 2)}) {
-        geometry.triangles.push_back(t + first);
-        geometry.materials.push_back(uint32_t(scene.materials.size() - 1));
-    }
+    primitive.normals.assign(4, {0, 1, 0});
+    primitive.triangles = {{0, 2, 1}, {0, 3, 2}};
+    primitive.material = uint32_t(scene.materials.size());
+    scene.materials.push_back(material);
+    Node node;
+    node.name = "floor";
+    node.mesh = int(scene.meshes.size());
+    scene.meshes.push_back({"floor", {primitive}, {}});
+    scene.nodes.push_back(node);
+    return with_floor;
+}
+
+/// The animation that --time and --animation choose; empty: none.
+std::string choose_animation(const PictureArguments& a, const Scene& scene) {
+    if (!a.animation.empty() || !a.time) return a.animation;
+    if (!scene.animations.empty()) return "0";
+    print_note("the scene has no animation: everything stands at rest");
+    return "";
 }
 
 }  // namespace
@@ -106,8 +114,6 @@ void check_ranges(const PictureArguments& a) {
         if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
             fail("{} must be three finite numbers", option);
     };
-    if (!a.frames.empty() || a.fps)
-        fail("several frames are not built into this version: leave --frames and --fps out, use --time");
     if (a.time && !(*a.time >= 0 && *a.time <= 1e6))
         fail("a moment of {} seconds is out of range: choose 0 to 1000000 (--time)", *a.time);
     finite(a.eye, "--eye");
@@ -144,6 +150,7 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.bounces = a.bounces;
     settings.spp = a.spp;
     settings.repeat = a.repeat;
+    settings.rebuild = a.rebuild;
     settings.exposure = a.exposure;
     settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
     settings.reflection = has("reflection");
@@ -153,19 +160,38 @@ RenderSettings settings_of(const PictureArguments& a) {
     return settings;
 }
 
+const Geometry& PreparedScene::geometry() {
+    if (!geometry_) {
+        simulate(scene);
+        geometry_ = flatten(scene);
+    }
+    return *geometry_;
+}
+
 PreparedScene prepare_scene(const PictureArguments& a) {
     PreparedScene scene;
     scene.scene = load_scene(a.scene);
-    if (a.time && a.animation.empty() && scene.scene.animations.empty())
-        print_note("the scene has no animation: --time has no effect");
-    else if (a.time || !a.animation.empty())
-        animate(scene.scene, a.animation.empty() ? "0" : a.animation, a.time.value_or(0));
-    scene.geometry = visible_geometry(scene.scene);
-    scene.camera = choose_camera(a, scene.scene, scene.geometry, float(a.size.x) / float(a.size.y));
-    if (!a.material.empty()) override_material(scene.scene, a.material, scene.geometry);
-    if (a.floor) add_floor(scene.scene, scene.geometry);
+    scene.animation = choose_animation(a, scene.scene);
+    scene.framed = scene.animation.empty() ? bounds(scene.scene) : bounds_over(scene.scene, scene.animation);
+    if (!a.material.empty()) override_material(scene.scene, a.material, scene.framed);
+    scene.bounds = a.floor ? add_floor(scene.scene, scene.framed) : scene.framed;
+    if (!scene.animation.empty()) {
+        scene.time = a.time.value_or(0);
+        animate(scene.scene, scene.animation, *scene.time);
+    }
+    check_visible(scene.geometry(), scene.scene, scene.time.has_value());
+    scene.triangles = scene.geometry().triangles.size();
+    scene.camera = choose_camera(a, scene.scene, scene.framed);
     scene.environment = choose_environment(a, scene.scene);
     return scene;
+}
+
+void move_to(PreparedScene& scene, const PictureArguments& a, double time) {
+    if (scene.animation.empty() || scene.time == time) return;
+    animate(scene.scene, scene.animation, time);
+    scene.time = time;
+    scene.forget_geometry();
+    scene.camera = choose_camera(a, scene.scene, scene.framed);
 }
 
 }  // namespace peelray

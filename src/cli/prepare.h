@@ -6,11 +6,24 @@
 
 namespace peelray {
 
+/// A scene at some moment. What frames the picture does not depend on the moment, so that a sequence does not wobble
+/// and any frame of it can be rendered alone.
 struct PreparedScene {
     Scene scene;
-    Geometry geometry;
     Camera camera;
     Environment environment;
+    std::string animation;       ///< the one that moves the scene, see animate(); empty: it stands at rest
+    std::optional<double> time;  ///< the moment of it that the scene is in
+    Box framed;                  ///< the scene without the floor of --floor, over the whole animation
+    Box bounds;                  ///< the same with the floor
+    uint64_t triangles = 0;      ///< with all instances
+
+    /// The triangles of this moment; put together when they are first asked for, since most tracers need none.
+    const Geometry& geometry();
+    void forget_geometry() { geometry_.reset(); }
+
+  private:
+    std::optional<Geometry> geometry_;
 };
 
 /// Throws Error for values that are well-formed but make no sense.
@@ -19,7 +32,9 @@ void check_ranges(const PictureArguments& arguments);
 void choose_hit(RenderSettings& settings, const std::string& hit);
 /// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);
-/// Loads the scene and applies --material, --floor, the camera and the light. Throws Error.
+/// Loads the scene and applies --material, --floor, --time, the camera and the light. Throws Error.
 PreparedScene prepare_scene(const PictureArguments& arguments);
+/// Moves a prepared scene with an animation to another moment: triangles, camera and lights are then those of `time`.
+void move_to(PreparedScene& scene, const PictureArguments& arguments, double time);
 
 }  // namespace peelray

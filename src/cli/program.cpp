@@ -38,6 +38,10 @@ const char* build_commit() {
     return PEELRAY_COMMIT;
 }
 
+const char* program_version() {
+    return PEELRAY_VERSION;
+}
+
 void TracingArguments::check() const {
     const auto later = [](const char* option, const std::string& value, const char* instead) {
         fail("{} {} is not built into this version: use {}", option, value, instead);
@@ -64,17 +68,15 @@ void print_note(const std::string& text) {
     fmt::print(stderr, "peelray: note: {}\n", one_line(text));
 }
 
-Geometry visible_geometry(const Scene& scene) {
-    Geometry geometry = flatten(scene);
+void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment) {
     const size_t count = geometry.triangles.size();
-    if (geometry.zero_area == count)
+    if (geometry.zero_area == count && !is_moment)
         fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
     for (const std::string& text : scene.notes) print_note(text);
     if (geometry.zero_area > 0)
         print_note(fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
     for (const std::string& extension : scene.extensions_unsupported)
         print_note(fmt::format("the extension {} has no effect in this version", extension));
-    return geometry;
 }
 
 void check_repeat(uint32_t repeat) {

@@ -39,20 +39,42 @@ struct PictureArguments {
     std::string camera, env;
     std::optional<glm::vec3> eye, look, up, background;
     std::optional<float> fov;  ///< degrees
-    bool sky = false, floor = false;
+    bool sky = false, floor = false, rebuild = false;
     std::string material, tonemap = "neutral";
     std::vector<std::string> effects = {"reflection", "refraction", "shadow"};
     float exposure = 0;
-    std::optional<double> time, fps;
-    std::string animation, frames;
+    std::optional<double> time;
+    std::string animation;
     uint32_t bounces = 4, spp = 1, repeat = 1;
     TracingArguments tracing;
     DeviceArguments device;
 };
 
+/// The frames from `first` up to, but without, `end`.
+struct FrameRange {
+    uint32_t first = 0, end = 0;
+};
+
+/// Part `index` of `count`.
+struct Shard {
+    uint32_t index = 0, count = 1;
+};
+
+/// Several pictures in a row.
+struct SequenceArguments {
+    std::optional<FrameRange> frames;
+    std::optional<uint32_t> turntable;  ///< frames of a full circle
+    std::optional<double> fps;
+    std::optional<Shard> shard;
+    bool resume = false;
+};
+
 struct RenderArguments : PictureArguments {
     std::filesystem::path output, stats;
     std::vector<std::string> aovs;
+    SequenceArguments sequence;
+
+    bool is_sequence() const { return sequence.frames || sequence.turntable; }
 };
 
 struct CompareArguments : PictureArguments {
@@ -72,13 +94,16 @@ struct TraceArguments {
 };
 
 void run_render(const RenderArguments& arguments);
+/// `run_render` where `is_sequence()`.
+void run_sequence(const RenderArguments& arguments);
 void run_compare(const CompareArguments& arguments);
 void run_trace(const TraceArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 
-/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit.
-Geometry visible_geometry(const Scene& scene);
+/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit,
+/// unless that is but one moment of an animation.
+void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment = false);
 /// Whatever a file's names brought along, as one line without terminal codes.
 std::string one_line(std::string text);
 /// A line on standard error that is no complaint.
@@ -88,7 +113,8 @@ void check_repeat(uint32_t repeat);
 /// Throws Error if a file of `outputs` cannot be written, comes twice or is one of `inputs`; empty names are left out.
 void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs);
 
-/// The build's commit, for stats.
+/// The build's commit and the program's version, for stats.
 const char* build_commit();
+const char* program_version();
 
 }  // namespace peelray

@@ -10,12 +10,12 @@
 
 namespace peelray {
 
-MadePicture reference_picture(const PreparedScene& scene, const PictureSettings& settings,
+MadePicture reference_picture(PreparedScene& scene, const PictureSettings& settings,
                               const std::function<void(double)>& progress) {
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
-    const PathTracer tracer(scene.scene, scene.geometry, scene.environment);
+    const PathTracer tracer(scene.scene, scene.geometry(), scene.environment);
     const auto built = Clock::now();
     MadePicture made;
     made.picture = tracer.render(settings, progress);
@@ -30,7 +30,7 @@ MadePicture reference_picture(const PreparedScene& scene, const PictureSettings&
                   {"api_version", nullptr},
                   {"commit", build_commit()},
                   {"image", {made.picture.width, made.picture.height}},
-                  {"triangles", scene.geometry.triangles.size()},
+                  {"triangles", scene.triangles},
                   {"timed", true},
                   {"frame_ms", trace_ms},
                   {"build_ms", build_ms}};
@@ -39,6 +39,10 @@ MadePicture reference_picture(const PreparedScene& scene, const PictureSettings&
     made.stats["hit"] = "double";
     made.summary = fmt::format("; BVH {:.2f} s, rays {:.2f} s", build_ms * 1e-3, trace_ms * 1e-3);
     return made;
+}
+
+std::string reference_version() {
+    return "reference, " + PathTracer::version();
 }
 
 }  // namespace peelray

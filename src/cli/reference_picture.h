@@ -7,7 +7,10 @@
 
 namespace peelray {
 
-MadePicture reference_picture(const PreparedScene& scene, const PictureSettings& settings,
+MadePicture reference_picture(PreparedScene& scene, const PictureSettings& settings,
                               const std::function<void(double)>& progress);
+
+/// Which reference this is: its pictures do not depend on the machine.
+std::string reference_version();
 
 }  // namespace peelray

@@ -18,24 +18,41 @@ Json device_stats(const Device& device) {
             {"commit", build_commit()}};
 }
 
-Json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes, uint64_t scratch,
-                const char* sampling) {
-    const glm::vec3 upper = grid.origin + glm::vec3(grid.dims) * grid.voxel;
-    return {{"n", resolution},
+static Json box_stats(const glm::vec3& lower, const glm::vec3& upper) {
+    return {{"lower", {lower.x, lower.y, lower.z}}, {"upper", {upper.x, upper.y, upper.z}}};
+}
+
+/// One cube, in the space of its body.
+static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
+    const CubeGrid& grid = body.grid;
+    return {{"triangles", body.triangles},
+            {"instances", instances},
+            {"built", fixed ? "once" : "every frame"},
+            {"n", body.resolution},
             {"voxels", {grid.dims.x, grid.dims.y, grid.dims.z}},
             {"voxel_size", grid.voxel},
-            {"box", {{"lower", {grid.origin.x, grid.origin.y, grid.origin.z}}, {"upper", {upper.x, upper.y, upper.z}}}},
-            {"builder", "compute"},
-            {"sampling", sampling},
-            {"samples", counts.fragments},
-            {"layers", counts.longest},
-            {"layers_of", "voxel list"},
-            {"occupied_voxels", counts.voxels},
-            {"occupied_nodes", counts.nodes},
-            {"bytes", bytes},
-            {"build_scratch_bytes", scratch},
-            {"triangles_without_area", counts.degenerate},
-            {"triangles_not_finite", counts.invalid}};
+            {"box", box_stats(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
+}
+
+Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
+                const Box& box, HitTest hit) {
+    Json json = {{"n", cubes.resolution},
+                 {"box", box_stats(box.lower, box.upper)},
+                 {"builder", "compute"},
+                 {"sampling", hit == HitTest::exact ? "conservative" : "centre"},
+                 {"samples", cubes.counts.fragments},
+                 {"layers", cubes.counts.longest},
+                 {"layers_of", "voxel list"},
+                 {"occupied_voxels", cubes.counts.voxels},
+                 {"occupied_nodes", cubes.counts.nodes},
+                 {"bytes", cubes.bytes},
+                 {"build_scratch_bytes", cubes.scratch_bytes},
+                 {"triangles_without_area", cubes.counts.degenerate},
+                 {"triangles_not_finite", cubes.counts.invalid},
+                 {"count", cubes.bodies}};
+    for (size_t i = 0; i < std::min<size_t>(bodies.size(), 64); i++)
+        json["cubes"].push_back(body_stats(bodies[i], shown[i], i < cubes.fixed));
+    return json;
 }
 
 Json ray_stats(const RayCounts& rays) {
@@ -63,12 +80,12 @@ static Json map_stats(const RenderStats& stats) {
               {"bytes", m.shadows.bytes}}}};
 }
 
-Json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry) {
+Json render_stats(const Device& device, const RenderResult& result, uint64_t triangles, const Box& box) {
     const RenderStats& s = result.stats;
     Json json = {{"tracer", s.tracer == Tracer::ldc ? "ldc" : s.tracer == Tracer::cubemap ? "cubemap" : "none"}};
     json.update(device_stats(device));
     json["image"] = {result.width, result.height};
-    json["triangles"] = geometry.triangles.size();
+    json["triangles"] = triangles;
     json["timed"] = s.timed;
     json["frame_ms"] = s.frame_ms;
     json["build_ms"] = s.build_ms;
@@ -83,27 +100,39 @@ Json render_stats(const Device& device, const RenderResult& result, const Geomet
     json["mrays_per_second"] = {
         {"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
         {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
-    if (s.ldc)
-        json["ldc"] = cube_stats(s.grid, s.cube, s.ldc, s.cube_bytes, s.scratch_bytes,
-                                 s.hit == HitTest::exact ? "conservative" : "centre");
+    if (s.cubes.bodies) {
+        json["ldc"] = cube_stats(s.cubes, s.bodies, s.shown, box, s.hit);
+        json["moved"] = {{"cubes_rebuilt", s.rebuilt},
+                         {"cubes_reused", s.cubes.bodies - s.rebuilt},
+                         {"instances_transformed", s.moved}};
+    }
     if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
-    json["hit"] = s.ldc ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
+    json["hit"] = s.cubes.bodies ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
     json["memory_bytes"] = {{"scene", s.scene_bytes},
-                            {"cube", s.cube_bytes},
-                            {"build_scratch", s.scratch_bytes},
+                            {"cube", s.cubes.bytes},
+                            {"build_scratch", s.cubes.scratch_bytes},
                             {"frame", s.frame_bytes},
                             {"peak", s.peak_bytes}};
     json["redone"] = s.redone;
     return json;
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
+/// For write_atomically() and the like: writes to the temporary name; `path` is for the message.
+static auto json_writer(const std::filesystem::path& path, const Json& json) {
+    return [&](const std::filesystem::path& temporary) {
         std::ofstream stream(temporary);
-        stream << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+        stream << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
         stream.close();
         if (!stream) fail("cannot write '{}': is the disk full?", path.string());
-    });
+    };
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+    write_atomically(path, json_writer(path, json));
+}
+
+bool write_json_if_absent(const std::filesystem::path& path, const Json& json) {
+    return write_if_absent(path, json_writer(path, json));
 }
 
 }  // namespace peelray

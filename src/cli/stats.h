@@ -11,14 +11,18 @@ namespace peelray {
 
 /// Device, driver, API version and the build's commit.
 nlohmann::ordered_json device_stats(const Device& device);
-/// The cube: N, box, samples, layers, bytes, builder.
-nlohmann::ordered_json cube_stats(const CubeGrid& grid, const LdcCounters& counts, uint32_t resolution, uint64_t bytes,
-                                  uint64_t scratch, const char* sampling);
+/// The cubes: N (the largest), box, samples, layers, bytes, builder, and each one's own (the first 64). `bodies`: with the
+/// cubes' grids; `shown`: instances of each; `box`: of the whole scene.
+nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
+                                  const std::vector<uint32_t>& shown, const Box& box, HitTest hit);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.
-nlohmann::ordered_json render_stats(const Device& device, const RenderResult& result, const Geometry& geometry);
+nlohmann::ordered_json render_stats(const Device& device, const RenderResult& result, uint64_t triangles,
+                                    const Box& box);
 /// Writes indented JSON, atomically. Throws Error if unwritable.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+/// The same, but leaves a file that is there alone. Returns whether it wrote.
+bool write_json_if_absent(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 
 }  // namespace peelray

@@ -57,6 +57,28 @@ std::optional<glm::uvec2> parse_block(const std::string& text) {
     return parse_size(text);
 }
 
+namespace {
+
+/// Two numbers with `separator` in between.
+std::optional<std::pair<uint32_t, uint32_t>> parse_pair(std::string_view text, char separator) {
+    const size_t at = text.find(separator);
+    if (at == std::string_view::npos) return std::nullopt;
+    const auto first = parse_number<uint32_t>(text.substr(0, at)), second = parse_number<uint32_t>(text.substr(at + 1));
+    return first && second ? std::optional(std::pair(*first, *second)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<FrameRange> parse_frames(const std::string& text) {
+    const auto pair = parse_pair(text, ':');
+    return pair ? std::optional(FrameRange{pair->first, pair->second}) : std::nullopt;
+}
+
+std::optional<Shard> parse_shard(const std::string& text) {
+    const auto pair = parse_pair(text, '/');
+    return pair ? std::optional(Shard{pair->first, pair->second}) : std::nullopt;
+}
+
 std::optional<std::vector<std::string>> parse_effects(const std::string& text) {
     return text == "none" ? std::optional(std::vector<std::string>()) : parse_names(text, effect_names());
 }

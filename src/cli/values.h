@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/program.h"
+
 namespace peelray {
 
 /// A whole text that is one number: no blanks, no leading plus. T: a float type ("inf" and "nan" count) or an integer
@@ -31,6 +33,10 @@ std::optional<glm::vec3> parse_vector(const std::string& text);
 std::optional<std::optional<uint32_t>> parse_resolution(const std::string& text);
 /// "8" or "8x4": the pixels of a block.
 std::optional<glm::uvec2> parse_block(const std::string& text);
+/// "10:20": the frames 10 to 19.
+std::optional<FrameRange> parse_frames(const std::string& text);
+/// "2/8": part 2 of 8, counted from 0.
+std::optional<Shard> parse_shard(const std::string& text);
 /// A list out of effect_names(), or "none": an empty one.
 std::optional<std::vector<std::string>> parse_effects(const std::string& text);
 /// A list out of aov_names(), or "all".

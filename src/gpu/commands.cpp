@@ -166,7 +166,8 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
 }
 
 void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                           uint32_t vertices, const Image2D& color, const Image2D& depth, const Buffer& target) {
+                           std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth,
+                           const Buffer& target) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
              pass.interface().push_constant_bytes, bytes);
@@ -207,7 +208,7 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     color_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     color_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     color_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    color_info.clearValue.color.uint32[0] = ~0u;
+    color_info.clearValue.color.uint32[0] = color_info.clearValue.color.uint32[1] = ~0u;
     VkRenderingAttachmentInfo depth_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     depth_info.imageView = depth.view();
     depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
@@ -229,7 +230,9 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0,
                                        nullptr);
     device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
-    device_.vk.vkCmdDraw(commands_, vertices, 1, 0, 0);
+    for (const DrawRange& range : ranges)
+        device_.vk.vkCmdDraw(commands_, 3 * range.triangles, range.instances, 3 * range.first_triangle,
+                             range.first_instance);
     device_.vk.vkCmdEndRendering(commands_);
 
     transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -399,6 +402,15 @@ void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, u
         std::memcpy(data.data() + done, staging_down_.mapped(), bytes);
         done += bytes;
     }
+}
+
+void grow(Device& device, Commands& commands, Buffer& buffer, const std::string& name, uint64_t bytes, uint64_t kept) {
+    if (kept == 0 || !buffer) return ensure_size(device, buffer, name, bytes);
+    if (buffer.bytes() >= bytes) return;
+    Buffer larger(device, name, bytes);
+    commands.copy(buffer, larger, kept);
+    commands.submit();
+    buffer = std::move(larger);
 }
 
 }  // namespace peelray

@@ -30,6 +30,12 @@ inline Groups groups_for(uint64_t items, uint32_t per_group) {
     return {uint32_t(groups < row ? groups : row), uint32_t((groups + row - 1) / row)};
 }
 
+/// Triangles of an instanced draw: the shader's gl_VertexIndex counts from first_triangle · 3, gl_InstanceIndex from
+/// first_instance.
+struct DrawRange {
+    uint32_t first_triangle, triangles, first_instance, instances;
+};
+
 /// GPU time of one pass of a submission.
 struct PassTime {
     std::string name;  ///< "group/pass" inside a group
@@ -66,12 +72,12 @@ class Commands {
                       const Buffer& arguments, uint64_t offset = 0) {
         record(pass, bindings, &params, sizeof params, {}, &arguments, offset);
     }
-    /// Draws `vertices` vertices into `color` (R32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies
-    /// the colour to `target` (width·height uint32).
+    /// Draws `ranges` into `color` (R32G32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies the
+    /// colour to `target` (width·height pairs of uint32).
     template <typename Params>
-    void draw(const RasterPass& pass, std::initializer_list<Binding> bindings, const Params& params, uint32_t vertices,
-              const Image2D& color, const Image2D& depth, const Buffer& target) {
-        record_draw(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, vertices, color, depth, target);
+    void draw(const RasterPass& pass, std::initializer_list<Binding> bindings, const Params& params,
+              std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth, const Buffer& target) {
+        record_draw(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, ranges, color, depth, target);
     }
 
     /// Fills `bytes` from `offset` (multiples of 4; ~0ull: to the end) with `value`.
@@ -117,7 +123,8 @@ class Commands {
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
                 const Buffer* arguments, uint64_t offset);
     void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                     uint32_t vertices, const Image2D& color, const Image2D& depth, const Buffer& target);
+                     std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth,
+                     const Buffer& target);
     void begin_timer(const std::string& name);
     void end_timer();
     void label(const std::string& name);
@@ -143,5 +150,8 @@ class Commands {
     std::unordered_map<VkBuffer, Access> accesses_;
     Buffer staging_up_, staging_down_;
 };
+
+/// Makes `buffer` hold at least `bytes`; its first `kept` bytes stay. Submits if there is something to keep.
+void grow(Device& device, Commands& commands, Buffer& buffer, const std::string& name, uint64_t bytes, uint64_t kept);
 
 }  // namespace peelray

@@ -53,7 +53,7 @@ class Device {
     /// specialisation constants 0, 1, …; each combination is a pass of its own.
     const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
 
-    /// The rasterising pass of NAME.vert and NAME.frag: one R32_UINT target and a D32 depth buffer (greater is nearer).
+    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is nearer).
     const RasterPass& raster_pass(std::string_view shader);
 
     /// What the validation layers said so far, one message each; empty without `validate`.

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace fs = std::filesystem;
 
 namespace peelray {
 namespace {
+
+constexpr const char* kTemporaryPrefix = ".peelray-";
 
 std::string reason(int code) {
     return std::generic_category().message(code);
@@ -70,7 +73,7 @@ fs::path reserve(const fs::path& path, const fs::path& target) {
     if (extension.size() > 16) extension.clear();
     for (;;) {
         const fs::path name =
-            target.parent_path() / fmt::format(".peelray-{}-{}.tmp{}", ::getpid(), counter++, extension);
+            target.parent_path() / fmt::format("{}{}-{}.tmp{}", kTemporaryPrefix, ::getpid(), counter++, extension);
         const Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (file.number >= 0) return name;
         if (errno != EEXIST)
@@ -108,6 +111,34 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     fs::rename(temporary.path, target, error);
     if (error) fail("cannot write {}: {}; name a place that can be written", path.string(), error.message());
     temporary.renamed = true;
+}
+
+bool write_if_absent(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    const fs::path target = destination(path);
+    Temporary temporary{reserve(path, target)};
+    write(temporary.path);
+    // A link is refused where the name is taken, a rename is not.
+    if (::link(temporary.path.c_str(), target.c_str()) == 0) return true;
+    if (errno == EEXIST) return false;
+    std::error_code error;
+    if (fs::exists(target, error)) return false;
+    fs::rename(temporary.path, target, error);  // a file system without links
+    if (error) fail("cannot write {}: {}; name a place that can be written", path.string(), error.message());
+    temporary.renamed = true;
+    return true;
+}
+
+void remove_stale_temporaries(const fs::path& folder) {
+    std::error_code error;
+    const auto now = fs::file_time_type::clock::now();
+    fs::directory_iterator entry(folder.empty() ? "." : folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with(kTemporaryPrefix) || name.find(".tmp") == std::string::npos) continue;
+        std::error_code gone;
+        const bool old = now - entry->last_write_time(gone) > std::chrono::hours(24);
+        if (!gone && old && entry->is_regular_file(gone)) fs::remove(entry->path(), gone);
+    }
 }
 
 std::string read_file(const fs::path& path) {

@@ -56,4 +56,12 @@ void check_writable(const std::filesystem::path& path);
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
+/// Like write_atomically, but leaves a file that is there already alone, also one that another process puts there at
+/// the same moment. Returns whether it wrote.
+bool write_if_absent(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+
+/// Removes what killed runs left of half-written files in a folder: only what was not touched for a day, since another
+/// run may be writing there.
+void remove_stale_temporaries(const std::filesystem::path& folder);
+
 }  // namespace peelray

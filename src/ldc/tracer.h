@@ -1,19 +1,26 @@
-// Tracing queues of rays in a cube.
+// Tracing queues of rays in cubes.
 #pragma once
 
 #include <optional>
 
 #include "gpu/commands.h"
-#include "ldc/cube.h"
+#include "ldc/instances.h"
 
 namespace peelray {
 
 enum class HitTest : uint8_t { exact, planar };
 
+/// What rays are traced in: all of a scene's cubes, placed in the world.
+struct TracedScene {
+    const Cubes& cubes;
+    const Instances& instances;
+    const TriangleBuffers& triangles;
+};
+
 /// A queue of rays on the device.
 struct RayQueue {
     const Buffer& rays;            ///< Ray each
-    const Buffer* skip = nullptr;  ///< a triangle per ray that does not count; null: none
+    const Buffer* skip = nullptr;  ///< SurfaceId per ray: a triangle that does not count; null: none
     uint32_t count;                ///< rays; with `counter`: room in the queue
     const Buffer* counters =
         nullptr;  ///< null: `count` rays; else the number is uint32 number `counter` of this buffer
@@ -29,10 +36,18 @@ enum class Edges : uint8_t {
     precise,  ///< in doubled precision: as a double-precision ray tracer sees them
 };
 
+/// The bindings of shaders/cube_fetch.glsl.
+std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);
+
 /// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the
-/// nearest. The cube must have been sampled for `test` (conservative: exact, centre: planar); asserted.
-void record_trace(Commands& commands, Device& device, const Cube& cube, const TriangleBuffers& triangles,
-                  const RayQueue& queue, const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
+/// nearest. The cubes must have been sampled for `test` (conservative: exact, centre: planar); asserted.
+void record_trace(Commands& commands, Device& device, const TracedScene& scene, const RayQueue& queue,
+                  const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
+
+/// Records the translation of `count` hits into file_hits (FileHit each). `triangle_ids`: uint32 per triangle, its
+/// place in the file less the instance's InstanceInfo::first_id.
+void record_file_hits(Commands& commands, Device& device, const Instances& instances, const Buffer& triangle_ids,
+                      const Buffer& hits, uint32_t count, const Buffer& file_hits);
 
 /// The sampling that a hit test needs.
 inline Sampling sampling_for(HitTest test) {

@@ -13,6 +13,10 @@ namespace peelray::optics {
 inline constexpr double pi = 3.14159265358979323846;
 /// Perceptual roughness below which a surface is a mirror.
 inline constexpr double mirror_roughness = 0.05;
+/// Cosine to a triangle's normal below which a shading normal counts as lying in the triangle's plane (as in shaders/).
+inline constexpr double normal_in_plane = 1e-4;
+/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface (as in shaders/).
+inline constexpr double stray_normal = 0.1;
 
 inline double largest(const glm::dvec3& c) {
     return std::max(c.x, std::max(c.y, c.z));

@@ -154,7 +154,8 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                            unsigned threads) const {
     check_settings(settings);
     const float aspect = float(settings.width) / float(settings.height);
-    const View view = make_view(settings.camera, aspect, impl_->geometry.lower, impl_->geometry.upper);
+    const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
+    const View view = make_view(settings.camera, aspect, box.lower, box.upper);
     const RenderContext context{impl_->bvh, impl_->surfaces, impl_->surroundings, impl_->lights, settings};
     Picture picture;
     prepare(picture, settings);

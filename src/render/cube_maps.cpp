@@ -25,8 +25,6 @@ uint32_t level_offset(uint32_t face, uint32_t level) {
 CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry)
     : device_(device),
       scene_(scene),
-      lower_(geometry.lower),
-      upper_(geometry.upper),
       objects_(source, geometry),
       shadows_(device),
       target_(device) {}
@@ -107,9 +105,9 @@ void CubeMaps::upload_frames(Commands& commands, const Frame& picture) {
     commands.upload(frames_, std::span<const Frame>(frames));
 }
 
-void CubeMaps::prepare(Commands& commands, const PictureSettings& settings, const Frame& picture) {
+void CubeMaps::prepare(Commands& commands, const PictureSettings& settings, const Frame& picture, const Box& box) {
     objects_.upload(device_, commands);
-    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), lower_, upper_, picture);
+    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), box.lower, box.upper, picture);
     choose_probes(settings);
     for (uint32_t i = 0; i < std::max(rounds_, 1u); i++)
         ensure_size(device_, texels_[i], "probes", texel_count_ * kTexelBytes);
@@ -200,7 +198,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"states", level.states},
                                    {"hits", level.hits},
                                    {"nodes", level.nodes},
-                                   {"triangle_objects", objects_.triangle_objects()},
+                                   {"triangle_objects", scene_.triangle_objects},
                                    {"objects", current_ ? with_probes_ : objects_.without_probes()},
                                    {"probes", current_ ? *current_ : texels_[0]}}),
                  params, groups);

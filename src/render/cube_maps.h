@@ -12,9 +12,12 @@ class CubeMaps {
     /// Takes from `source` and `geometry` what it needs; `scene` must outlive it.
     CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry);
 
+    /// Takes on another moment of the same scene.
+    void move(const Geometry& geometry) { objects_.move(geometry); }
+
     /// Chooses the objects that get a probe and the faces' size; makes room for probes and shadow maps. `picture`: the
-    /// picture's constants, on which those of the maps' views are modelled.
-    void prepare(Commands& commands, const PictureSettings& settings, const Frame& picture);
+    /// picture's constants, on which those of the maps' views are modelled. `box`: of the scene.
+    void prepare(Commands& commands, const PictureSettings& settings, const Frame& picture, const Box& box);
 
     /// Texels along a probe's face, 0 without probes: level 0 of the queues must have room for its square.
     uint32_t face() const { return face_; }
@@ -48,7 +51,6 @@ class CubeMaps {
 
     Device& device_;
     const GpuScene& scene_;
-    glm::vec3 lower_, upper_;
     ObjectTable objects_;
     ShadowMaps shadows_;
     std::vector<Probe> probes_;

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "render/transforms.h"
+#include "scene/picture.h"
 
 namespace peelray {
 namespace {
@@ -45,18 +49,42 @@ GpuLight gpu_light(const Light& light) {
     return g;
 }
 
+/// Instances are in the order of their bodies.
+std::vector<DrawRange> draw_ranges(const Assembly& assembly) {
+    std::vector<DrawRange> draws;
+    for (uint32_t i = 0; i < assembly.instances.size(); i++) {
+        const Assembly::Body& body = assembly.bodies[assembly.instances[i].body];
+        if (draws.empty() || draws.back().first_triangle != body.first_triangle)
+            draws.push_back({body.first_triangle, body.triangles, i, 0});
+        draws.back().instances++;
+    }
+    return draws;
+}
+
 }  // namespace
 
-GpuScene::GpuScene(Device& device, const Scene& scene, const Geometry& geometry, const Environment& env)
-    : triangles(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper) {
+GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly, const Environment& env)
+    : triangles(device, assembly.positions, assembly.triangles),
+      instances(device, instance_infos(assembly)),
+      draws(draw_ranges(assembly)),
+      device_(device),
+      placed_(assembly.instances),
+      fixed_bodies_(assembly.fixed),
+      deformer_(device, scene, assembly),
+      generators_(device, scene, assembly) {
     Commands commands(device);
-    normals = upload(device, commands, "vertex normals", geometry.normals);
-    uvs = upload(device, commands, "texture coordinates", geometry.uvs);
-    colors = upload(device, commands, "vertex colours", geometry.colors);
-    has_colors = !geometry.colors.empty();
-    triangle_materials = upload(device, commands, "triangle materials", geometry.materials);
-    upload_materials(device, commands, scene, geometry);
-    upload_lights(device, commands, scene, env);
+    normals = upload(device, commands, "vertex normals", assembly.normals);
+    uvs = upload(device, commands, "texture coordinates", assembly.uvs);
+    colors = upload(device, commands, "vertex colours", assembly.colors);
+    has_colors = !assembly.colors.empty();
+    triangle_materials = upload(device, commands, "triangle materials", assembly.materials);
+    triangle_ids = upload(device, commands, "places of triangles in the file", assembly.ids);
+    triangle_objects = upload(device, commands, "objects of the triangles", assembly.objects);
+    upload_materials(device, commands, scene);
+    std::vector<bool> used(scene.materials.size(), false);
+    for (uint32_t material : assembly.materials) used[material] = true;
+    for (size_t i = 0; i < used.size(); i++) has_glass |= used[i] && transmits(scene.materials[i]);
+    for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
     environment = upload(device, commands, "environment map", env.texels);
     env_size_ = {env.width, env.height};
     env_levels_ = env.levels;
@@ -65,16 +93,35 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Geometry& geometry,
     sun_direction_ = env.sun_direction;
     sun_radiance_ = env.sun_radiance;
     irradiance_ = env.irradiance;
+    pose(commands, scene);
 }
 
-void GpuScene::upload_materials(Device& device, Commands& commands, const Scene& scene, const Geometry& geometry) {
+uint32_t GpuScene::pose(Commands& commands, const Scene& scene) {
+    std::vector<GpuTransform> transforms = transforms_of(placed_, world_matrices(scene));
+    uint32_t moved = 0;
+    for (size_t i = 0; i < transforms_.size(); i++)
+        moved += generators_.places(placed_[i].node) ||
+                 std::memcmp(&transforms[i], &transforms_[i], sizeof transforms[i]) != 0;
+    if (moved > 0 || transforms_.empty()) instances.place(commands, std::span<const GpuTransform>(transforms));
+    transforms_ = std::move(transforms);
+    deformer_.pose(commands, scene, triangles.triangles);
+    generators_.pose(commands, scene);
+    upload_lights(commands, scene);
+    return moved;
+}
+
+void GpuScene::record_animation(Commands& commands, const Cubes& cubes) {
+    if (const uint64_t count = cubes.bodies().size() - fixed_bodies_) {
+        commands.fill(cubes.body_lower, ~0u, fixed_bodies_ * 12ull, count * 12);
+        commands.fill(cubes.body_upper, 0, fixed_bodies_ * 12ull, count * 12);
+    }
+    deformer_.record(commands, cubes, triangles, normals);
+    generators_.record(commands, cubes, triangles, normals, instances);
+}
+
+void GpuScene::upload_materials(Device& device, Commands& commands, const Scene& scene) {
     std::vector<GpuMaterial> gpu_materials;
     for (const Material& material : scene.materials) gpu_materials.push_back(gpu_material(material));
-    std::vector<bool> used(scene.materials.size(), false);
-    for (uint32_t material : geometry.materials) used[material] = true;
-    for (size_t i = 0; i < used.size(); i++)
-        has_glass |= used[i] && gpu_materials[i].transmission > 0 && gpu_materials[i].metallic < 1;
-
     std::vector<GpuTexture> infos;
     std::vector<uint32_t> all_texels;
     for (const Texture& texture : scene.textures) {
@@ -87,21 +134,27 @@ void GpuScene::upload_materials(Device& device, Commands& commands, const Scene&
     texels = upload(device, commands, "textures", all_texels);
 }
 
-void GpuScene::upload_lights(Device& device, Commands& commands, const Scene& scene, const Environment& env) {
-    for (const Light& light : scene.lights) light_list.push_back(gpu_light(light));
-    for (const Light& light : env.lights) light_list.push_back(gpu_light(light));
-    lights = upload(device, commands, "lights", light_list);
+void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
+    std::vector<GpuLight> list;
+    for (const Light& light : scene.lights) list.push_back(gpu_light(light));
+    list.insert(list.end(), environment_lights_.begin(), environment_lights_.end());
+    const size_t bytes = list.size() * sizeof(GpuLight);
+    if (lights && list.size() == light_list.size() && std::memcmp(list.data(), light_list.data(), bytes) == 0) return;
+    light_list = std::move(list);
+    lights = upload(device_, commands, "lights", light_list);
 }
 
 uint64_t GpuScene::bytes() const {
-    uint64_t sum = 0;
-    for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors,
-                                 &triangle_materials, &materials, &texture_infos, &texels, &lights, &environment})
+    uint64_t sum = instances.bytes() + deformer_.bytes() + generators_.bytes();
+    for (const Buffer* buffer :
+         {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors, &triangle_materials, &triangle_ids,
+          &triangle_objects, &materials, &texture_infos, &texels, &lights, &environment})
         sum += buffer->bytes();
     return sum;
 }
 
 void GpuScene::describe(Frame& frame) const {
+    frame.tree = instances.tree();
     frame.lights = uint32_t(light_list.size());
     frame.has_colors = has_colors;
     frame.env_size = env_size_;

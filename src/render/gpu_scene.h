@@ -1,36 +1,53 @@
-// The scene's attributes on the device: what shading reads beside the triangles themselves.
+// The scene on the device: bodies, where their instances stand, and what shading reads beside the triangles themselves.
 #pragma once
 
-#include "gpu/commands.h"
-#include "ldc/cube.h"
+#include "ldc/instances.h"
 #include "params.h"
+#include "render/deformer.h"
+#include "render/generators.h"
+#include "scene/assembly.h"
 #include "scene/environment.h"
-#include "scene/scene.h"
 
 namespace peelray {
 
-/// Uploaded once per scene and environment. Throws Error when the device has no room.
+/// Uploaded once per scene and environment; pose() moves it. Throws Error when the device has no room.
 class GpuScene {
   public:
-    GpuScene(Device& device, const Scene& scene, const Geometry& geometry, const Environment& environment);
+    GpuScene(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
 
-    TriangleBuffers triangles;
-    Buffer normals, uvs, colors, triangle_materials;
+    TriangleBuffers triangles;  ///< in the spaces of their bodies
+    Buffer normals, uvs, colors, triangle_materials, triangle_ids, triangle_objects;
     Buffer materials, texture_infos, texels;
     Buffer lights, environment;
     bool has_glass = false;  ///< some triangle lets light through
     bool has_colors = false;
     std::vector<GpuLight> light_list;  ///< what `lights` holds
+    Instances instances;
+    std::vector<DrawRange> draws;  ///< all instances, a draw per body
+
+    /// Takes on the moment that `scene` is in: transforms, joints, weights, lights, what is generated. Returns how many
+    /// instances moved; those that are placed on the device all count.
+    uint32_t pose(Commands& commands, const Scene& scene);
+
+    /// Records what computes the vertices of this moment.
+    void record_animation(Commands& commands, const Cubes& cubes);
 
     uint64_t bytes() const;
 
-    /// The environment's part of the frame constants.
+    /// The environment's and the instances' part of the frame constants.
     void describe(Frame& frame) const;
 
   private:
-    void upload_materials(Device& device, Commands& commands, const Scene& scene, const Geometry& geometry);
-    void upload_lights(Device& device, Commands& commands, const Scene& scene, const Environment& environment);
+    void upload_materials(Device& device, Commands& commands, const Scene& scene);
+    void upload_lights(Commands& commands, const Scene& scene);
 
+    Device& device_;
+    std::vector<Assembly::Instance> placed_;
+    std::vector<GpuTransform> transforms_;  ///< as they were uploaded last
+    uint32_t fixed_bodies_;
+    Deformer deformer_;
+    Generators generators_;
+    std::vector<GpuLight> environment_lights_;
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0;
     float sun_cosine_ = 2, rough_limit_ = 1e30f;

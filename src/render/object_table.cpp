@@ -16,11 +16,6 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
         s.count = object.count;
         uint32_t last = ~0u;
         for (uint32_t i = object.first; i < object.first + object.count; i++) {
-            for (int k = 0; k < 3; k++) {
-                const glm::vec3& p = geometry.positions[geometry.triangles[i][k]];
-                s.lower = glm::min(s.lower, p);
-                s.upper = glm::max(s.upper, p);
-            }
             if (geometry.materials[i] == last) continue;
             last = geometry.materials[i];
             const Material& m = scene.materials[last];
@@ -31,6 +26,20 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             s.roughest = std::max(s.roughest, m.roughness);
         }
         objects_.push_back(s);
+    }
+    move(geometry);
+}
+
+void ObjectTable::move(const Geometry& geometry) {
+    for (ObjectSummary& s : objects_) {
+        s.lower = glm::vec3(INFINITY);
+        s.upper = glm::vec3(-INFINITY);
+        for (uint32_t i = s.first; i < s.first + s.count; i++)
+            for (int k = 0; k < 3; k++) {
+                const glm::vec3& p = geometry.positions[geometry.triangles[i][k]];
+                s.lower = glm::min(s.lower, p);
+                s.upper = glm::max(s.upper, p);
+            }
     }
 }
 
@@ -44,13 +53,7 @@ std::vector<GpuObject> ObjectTable::gpu_objects() const {
 }
 
 void ObjectTable::upload(Device& device, Commands& commands) {
-    if (triangle_objects_) return;
-    std::vector<uint32_t> owners(objects_.back().first + objects_.back().count);
-    for (uint32_t i = 0; i < objects_.size(); i++)
-        std::fill_n(owners.begin() + objects_[i].first, objects_[i].count, i);
-    triangle_objects_ = Buffer(device, "objects of the triangles", owners.size() * 4);
-    commands.upload(triangle_objects_, std::span<const uint32_t>(owners));
-    without_probes_ = Buffer(device, "objects", objects_.size() * sizeof(GpuObject));
+    ensure_size(device, without_probes_, "objects", objects_.size() * sizeof(GpuObject));
     commands.upload(without_probes_, std::span<const GpuObject>(gpu_objects()));
 }
 
@@ -62,9 +65,10 @@ void ObjectTable::record_visibility(Commands& commands, Device& device, const Gp
                    {"triangles", scene.triangles.triangles},
                    {"triangle_materials", scene.triangle_materials},
                    {"materials", scene.materials},
-                   {"triangle_objects", triangle_objects_},
-                   {"objects", without_probes_}},
-                  params, scene.triangles.count * 3, target.color, target.depth, target.visibility);
+                   {"triangle_objects", scene.triangle_objects},
+                   {"objects", without_probes_},
+                   {"instances", scene.instances.table()}},
+                  params, scene.draws, target.color, target.depth, target.visibility);
 }
 
 }  // namespace peelray

@@ -24,15 +24,17 @@ class ObjectTable {
   public:
     ObjectTable(const Scene& scene, const Geometry& geometry);
 
+    /// Takes on the boxes of the same scene in another moment.
+    void move(const Geometry& geometry);
+
     const std::vector<ObjectSummary>& objects() const { return objects_; }
 
     /// GpuObject of every object, without probes.
     std::vector<GpuObject> gpu_objects() const;
 
-    /// Makes the buffers, if there are none yet.
+    /// Uploads the table without probes.
     void upload(Device& device, Commands& commands);
-    const Buffer& triangle_objects() const { return triangle_objects_; }  ///< uint32 per triangle
-    const Buffer& without_probes() const { return without_probes_; }      ///< GpuObject per object
+    const Buffer& without_probes() const { return without_probes_; }  ///< GpuObject per object
 
     /// Rasterises what a probe or a light sees into `target`, whose frame constants are set.
     void record_visibility(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
@@ -40,7 +42,7 @@ class ObjectTable {
 
   private:
     std::vector<ObjectSummary> objects_;
-    Buffer triangle_objects_, without_probes_;
+    Buffer without_probes_;
 };
 
 }  // namespace peelray

@@ -18,7 +18,7 @@ void PathQueues::allocate(PathLevel& level, uint32_t index, uint32_t capacity) {
     level.capacity = capacity;
     ensure_size(device_, level.rays, name("rays"), uint64_t(capacity) * sizeof(Ray));
     ensure_size(device_, level.states, name("ray states"), uint64_t(capacity) * sizeof(RayState));
-    ensure_size(device_, level.skip, name("ray origins"), uint64_t(capacity) * 4);
+    ensure_size(device_, level.skip, name("ray origins"), uint64_t(capacity) * sizeof(SurfaceId));
     ensure_size(device_, level.hits, name("hits"), uint64_t(capacity) * sizeof(Hit));
     ensure_size(device_, level.nodes, name("path nodes"), uint64_t(capacity) * sizeof(PathNode));
 }

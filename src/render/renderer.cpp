@@ -5,7 +5,6 @@
 #include <map>
 
 #include "base/error.h"
-#include "render/path_queues.h"
 
 namespace peelray {
 namespace {
@@ -44,26 +43,20 @@ void describe_view(Frame& frame, const View& view) {
 
 }  // namespace
 
-AutoChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
-    AutoChoice choice{settings.ldc, settings.hit};
+CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
+    CubeChoice choice{settings.ldc, settings.hit, settings.rebuild};
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
     if (settings.hit_auto) choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
-    if (choice.ldc == 0) {
-        if (choice.hit == HitTest::planar)
-            choice.ldc = 1024;
-        else
-            choice.ldc = triangles < 50'000 ? 256 : triangles < 1'500'000 ? 512 : 1024;
-    }
     return choice;
 }
 
 struct Renderer::Impl {
     Device& device;
+    const Assembly assembly;
+    const Scene* moment;  ///< the scene as it is now
     GpuScene scene;
-    glm::vec3 lower, upper;
-    CubeMaps maps;
-    ComputeBuilder builder;
-    Cube cube;
+    std::unique_ptr<SceneCubes> cubes;
+    std::unique_ptr<CubeMaps> maps;
     PathQueues queues;
     Commands commands;
     ViewTarget view;
@@ -72,28 +65,41 @@ struct Renderer::Impl {
     RenderSettings settings;
     HitTest hit = HitTest::exact;
     Frame frame{};
+    Box box;  ///< what the settings say, else that of the moment
     uint32_t last_level = 0, band_rows = 0;
     RayCounts rays;
-    uint32_t redone = 0;
+    uint32_t redone = 0, rebuilt = 0, moved = 0;
+    bool maps_moved = false;
     TimeTable times;
     double frame_ms = 0;
 
-    Impl(Device& device, const Scene& source, const Geometry& geometry, const Environment& environment)
+    Impl(Device& device, const Scene& source, const Assembly& assembly, const Environment& environment)
         : device(device),
-          scene(device, source, geometry, environment),
-          lower(geometry.lower),
-          upper(geometry.upper),
-          maps(device, scene, source, geometry),
-          builder(device),
+          assembly(without_geometry(assembly)),
+          moment(&source),
+          scene(device, source, assembly, environment),
           queues(device),
           commands(device),
           view(device) {}
 
+    /// What is left of an assembly when its triangles are on the device.
+    static Assembly without_geometry(const Assembly& from) {
+        Assembly out;
+        out.bodies = from.bodies;
+        out.fixed = from.fixed;
+        out.instances = from.instances;
+        out.shown = from.shown;
+        return out;
+    }
+
+    TracedScene traced() const { return {cubes->cubes(), scene.instances, scene.triangles}; }
     void check_settings() const;
     void prepare_images();
+    void prepare_cubes();
+    void prepare_maps();
     void prepare_frame();
     void count_times();
-    void build_cube();
+    void build_cubes();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
     void record_level(const LevelParams& p);
@@ -102,6 +108,7 @@ struct Renderer::Impl {
     void record_band(uint32_t sample, uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
+    void describe(RenderStats& stats);
 };
 
 void Renderer::Impl::check_settings() const {
@@ -128,6 +135,27 @@ void Renderer::Impl::prepare_images() {
     ensure_size(device, encoded, "encoded picture", pixels * 4);
 }
 
+/// The cubes that the settings ask for, not yet built; without tracing they tell no more than where things are.
+void Renderer::Impl::prepare_cubes() {
+    uint32_t triangles = 0;
+    for (const Assembly::Body& body : assembly.bodies) triangles += body.triangles;
+    const CubeChoice choice = choose_automatically(triangles, settings);
+    hit = choice.hit;
+    if (cubes && cubes->choice() == choice) return;
+    cubes.reset();  // first, so that both never live at once
+    cubes = std::make_unique<SceneCubes>(device, assembly, choice);
+}
+
+void Renderer::Impl::prepare_maps() {
+    if (!maps) {
+        maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment));
+    } else if (maps_moved) {
+        maps->move(flatten(*moment));
+    }
+    maps_moved = false;
+    maps->prepare(commands, settings, frame, box);
+}
+
 void Renderer::Impl::prepare_frame() {
     const bool cubemap = settings.tracer == Tracer::cubemap;
     last_level = settings.tracer == Tracer::ldc ? settings.bounces : 0;
@@ -139,8 +167,9 @@ void Renderer::Impl::prepare_frame() {
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
 
     frame = {};
-    frame.grid = cube.grid;
-    describe_view(frame, make_view(settings.camera, float(settings.width) / float(settings.height), lower, upper));
+    box = settings.bounds ? *settings.bounds : bounds(*moment);
+    describe_view(frame,
+                  make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = row_pixels;
@@ -153,12 +182,12 @@ void Renderer::Impl::prepare_frame() {
     // Planar hits know a surface to about a voxel: a ray counts from beyond the reach of its own surface's samples,
     // which accept hits up to 0.7 voxels beside them. Measured against the reference (docs/accuracy.md): 1.0 and 1.5
     // lose contact shadows and nothing is gained.
-    frame.surface_offset = settings.tracer == Tracer::ldc && hit == HitTest::planar ? 0.7f * cube.grid.voxel : 0;
+    frame.surface_offset = settings.tracer == Tracer::ldc && hit == HitTest::planar ? 0.7f : 0;
     frame.spp = cubemap ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.last_level = last_level;
     commands.upload(view.frame, std::span<const Frame>(&frame, 1));
-    if (cubemap) maps.prepare(commands, settings, frame);
-    queues.prepare(std::max(row_pixels * band_rows, cubemap ? maps.face() * maps.face() : 0), last_level + 1,
+    if (cubemap) prepare_maps();
+    queues.prepare(std::max(row_pixels * band_rows, cubemap ? maps->face() * maps->face() : 0), last_level + 1,
                    scene.has_glass);
 }
 
@@ -167,20 +196,33 @@ void Renderer::Impl::count_times() {
     frame_ms += commands.elapsed_ms();
 }
 
-void Renderer::Impl::build_cube() {
+/// Everything up to the cubes of this moment: vertices, cubes, instances.
+void Renderer::Impl::build_cubes() {
+    const bool traces = settings.tracer == Tracer::ldc;
+    rebuilt = 0;
+    if (traces && cubes->build_fixed(commands, scene.triangles)) {
+        count_times();
+        rebuilt = cubes->stats().fixed;
+        redone += cubes->stats().redone;
+    }
     for (;; redone++) {
-        builder.record(commands, scene.triangles, cube);
+        scene.record_animation(commands, cubes->cubes());
+        if (traces) cubes->record(commands, scene.triangles);
+        scene.instances.record(commands, cubes->cubes());
         commands.submit();
-        if (builder.finish(cube)) break;
+        if (!traces || cubes->finish(commands)) break;
     }
     count_times();
+    if (traces) rebuilt += cubes->stats().bodies - cubes->stats().fixed;
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    commands.draw(
-        device.raster_pass("visibility"),
-        {{"frame", view.frame}, {"positions", scene.triangles.positions}, {"triangles", scene.triangles.triangles}},
-        VisibilityParams{sample_position(sample)}, scene.triangles.count * 3, view.color, view.depth, view.visibility);
+    commands.draw(device.raster_pass("visibility"),
+                  {{"frame", view.frame},
+                   {"positions", scene.triangles.positions},
+                   {"triangles", scene.triangles.triangles},
+                   {"instances", scene.instances.table()}},
+                  VisibilityParams{sample_position(sample)}, scene.draws, view.color, view.depth, view.visibility);
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -215,15 +257,18 @@ void Renderer::Impl::record_scatter(const LevelParams& p) {
 void Renderer::Impl::record_shadow(const LevelParams& p) {
     const PathLevel& level = queues.level(p.level);
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
-    // Without a cube its bindings still need buffers; the shader does not read them then.
-    const auto cube_buffer = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
+    // Without cubes their bindings still need buffers; the shader does not read them then.
+    const Cubes& c = cubes->cubes();
+    const auto or_any = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
     commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
                           surface_bindings(scene, view.frame,
-                                           {{"top_table", cube_buffer(cube.top_table)},
-                                            {"node_table", cube_buffer(cube.node_table)},
-                                            {"voxel_table", cube_buffer(cube.voxel_table)},
-                                            {"samples", cube_buffer(cube.samples)},
-                                            {"sample_ids", cube_buffer(cube.sample_ids)},
+                                           {{"top_table", or_any(c.top_table)},
+                                            {"node_table", or_any(c.node_table)},
+                                            {"voxel_table", or_any(c.voxel_table)},
+                                            {"samples", or_any(c.samples)},
+                                            {"sample_ids", or_any(c.sample_ids)},
+                                            {"instance_boxes", scene.instances.boxes()},
+                                            {"instance_cubes", scene.instances.cubes()},
                                             {"rays", level.rays},
                                             {"states", level.states},
                                             {"hits", level.hits},
@@ -237,13 +282,13 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
 void Renderer::Impl::record_level(const LevelParams& p) {
     const PathLevel& level = queues.level(p.level);
     if (settings.tracer == Tracer::cubemap) {
-        maps.record_shading(commands, view.frame, level, p);
+        maps->record_shading(commands, view.frame, level, p);
         return;
     }
     commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
     if (p.level > 0)
         record_trace(
-            commands, device, cube, scene.triangles,
+            commands, device, traced(),
             {level.rays, &level.skip, level.capacity, &queues.counters(), p.level, &queues.groups(), p.level * 12ull},
             level.hits, hit, false, Edges::single);
     record_scatter(p);
@@ -274,9 +319,9 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     rays = {};
     times = {};
     frame_ms = 0;
-    if (settings.tracer == Tracer::ldc) build_cube();
+    build_cubes();
     if (settings.tracer == Tracer::cubemap)
-        maps.render(commands, queues, [&] {
+        maps->render(commands, queues, [&] {
             count_times();
             if (progress) progress(0);  // where an interrupt ends the work
         });
@@ -320,7 +365,10 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
         commands.run(
             device.pass("aov"),
             surface_bindings(scene, view.frame,
-                             {{"rays", queues.level(0).rays}, {"hits", queues.level(0).hits}, {"aovs", aov_buffer}}),
+                             {{"rays", queues.level(0).rays},
+                              {"hits", queues.level(0).hits},
+                              {"aovs", aov_buffer},
+                              {"triangle_ids", scene.triangle_ids}}),
             p, groups_for(p.capacity, 64));
     }
     commands.submit();
@@ -335,21 +383,42 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     }
 }
 
-Renderer::Renderer(Device& device, const Scene& scene, const Geometry& geometry, const Environment& environment)
-    : impl_(std::make_unique<Impl>(device, scene, geometry, environment)) {}
+Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment)
+    : impl_(std::make_unique<Impl>(device, scene, assembly, environment)) {}
 
 Renderer::~Renderer() = default;
+
+void Renderer::pose(const Scene& scene) {
+    impl_->moment = &scene;
+    impl_->moved = impl_->scene.pose(impl_->commands, scene);
+    impl_->maps_moved = true;
+}
+
+/// All but the times.
+void Renderer::Impl::describe(RenderStats& stats) {
+    stats.timed = device.timestamp_period() > 0;
+    stats.redone = redone;
+    stats.hit = hit;
+    stats.scene_bytes = scene.bytes();
+    stats.frame_bytes = queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes();
+    stats.tracer = settings.tracer;
+    stats.moved = moved;
+    if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
+    if (settings.tracer != Tracer::ldc) return;
+    stats.rebuilt = rebuilt;
+    stats.cubes = cubes->stats();
+    stats.bodies = cubes->cubes().download_bodies(commands);
+    stats.shown.resize(stats.bodies.size());
+    for (const Assembly::Instance& instance : assembly.instances) stats.shown[instance.body]++;
+}
 
 RenderResult Renderer::render(const RenderSettings& settings, const std::function<void(double)>& progress) {
     Impl& r = *impl_;
     r.settings = settings;
     r.check_settings();
-    const AutoChoice choice = choose_automatically(r.scene.triangles.count, settings);
-    r.hit = choice.hit;
     r.redone = 0;
     r.prepare_images();
-    if (settings.tracer == Tracer::ldc)
-        r.builder.prepare(r.cube, r.scene.triangles, choice.ldc, sampling_for(choice.hit));
+    r.prepare_cubes();
     r.prepare_frame();
 
     RenderResult result;
@@ -373,21 +442,8 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
             stats.maps_ms += stats.passes.back().ms;
     }
     stats.frame_ms = median(frames);
-    stats.timed = r.device.timestamp_period() > 0;
     result.rays = r.rays;
-    stats.redone = r.redone;
-    stats.hit = choice.hit;
-    stats.scene_bytes = r.scene.bytes();
-    stats.frame_bytes = r.queues.bytes() + r.picture.bytes() + r.encoded.bytes() + r.view.visibility.bytes();
-    stats.tracer = settings.tracer;
-    if (settings.tracer == Tracer::cubemap) stats.maps = r.maps.stats();
-    if (settings.tracer == Tracer::ldc) {
-        stats.ldc = choice.ldc;
-        stats.grid = r.cube.grid;
-        stats.cube = r.cube.counts;
-        stats.cube_bytes = r.cube.bytes().total();
-        stats.scratch_bytes = r.builder.scratch_bytes();
-    }
+    r.describe(stats);
     result.width = settings.width;
     result.height = settings.height;
     const uint64_t pixels = uint64_t(settings.width) * settings.height;

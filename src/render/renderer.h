@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ldc/compute_builder.h"
-#include "ldc/tracer.h"
 #include "render/cube_maps.h"
+#include "render/scene_cubes.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -22,7 +21,8 @@ enum class Tracer : uint8_t {
 
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings {
-    uint32_t ldc = 0;      ///< voxels along the box's longest side, 16 to 2048; 0: chosen by the number of triangles
+    uint32_t ldc = 0;      ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
+    bool rebuild = false;  ///< for measuring: every cube anew in every frame, as if everything changed its shape
     bool hit_auto = true;  ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;
     Tracer tracer = Tracer::ldc;
@@ -40,10 +40,12 @@ struct RenderStats {
     double build_ms = 0;       ///< of the cube's passes
     double maps_ms = 0;        ///< of the passes of probes and shadow maps
     bool timed = false;        ///< false: the device has no timestamps
-    CubeGrid grid{};
-    LdcCounters cube{};
-    uint64_t cube_bytes = 0, scratch_bytes = 0, scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
-    uint32_t ldc = 0;
+    SceneCubes::Stats cubes;
+    std::vector<LdcBody> bodies;   ///< with the grids of their cubes
+    std::vector<uint32_t> shown;   ///< how many instances show each of them
+    uint32_t rebuilt = 0;          ///< cubes that were built for this frame
+    uint32_t moved = 0;            ///< instances that stand elsewhere than in the frame before
+    uint64_t scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
     HitTest hit = HitTest::exact;
     CubeMaps::Stats maps;
     uint32_t redone = 0;  ///< how often something did not fit and was done again
@@ -53,18 +55,18 @@ struct RenderResult : Picture {
     RenderStats stats;
 };
 
-/// The cube's resolution and hit test that `auto` stands for.
-struct AutoChoice {
-    uint32_t ldc;
-    HitTest hit;
-};
-AutoChoice choose_automatically(uint32_t triangles, const RenderSettings& settings);
+/// What `auto` stands for in a scene of so many triangles.
+CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings);
 
-/// Renders pictures of one scene; keeps its buffers from picture to picture.
+/// Renders pictures of one scene, in the moments it is put into; keeps its buffers and cubes from picture to picture.
 class Renderer {
   public:
-    Renderer(Device& device, const Scene& scene, const Geometry& geometry, const Environment& environment);
+    /// `assembly`: of this scene. The moment is that which the scene is in.
+    Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
     ~Renderer();
+
+    /// Takes on the moment that the same scene is in now; `scene` must not be changed before the next call.
+    void pose(const Scene& scene);
 
     /// Throws Error for impossible settings (naming the option) or when the device's limits or memory do not do.
     /// `progress` is told the share done, [0, 1].

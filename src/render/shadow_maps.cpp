@@ -140,7 +140,8 @@ void ShadowMaps::render(Commands& commands, const GpuScene& scene, const ObjectT
                       {"positions", scene.triangles.positions},
                       {"triangles", scene.triangles.triangles},
                       {"visibility", target.visibility},
-                      {"shadow_depths", depths_}},
+                      {"shadow_depths", depths_},
+                      {"instances", scene.instances.table()}},
                      MapParams{map.first, map.size}, groups_for(uint64_t(map.size) * map.size, 64));
     }
     commands.end_group();

@@ -6,11 +6,11 @@ void ViewTarget::resize(Device& device, uint32_t width, uint32_t height) {
     if (color.width() == width && color.height() == height && visibility) return;
     color.reset();
     depth.reset();
-    color = Image2D(device, "visibility", width, height, VK_FORMAT_R32_UINT,
+    color = Image2D(device, "visibility", width, height, VK_FORMAT_R32G32_UINT,
                     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     depth = Image2D(device, "depth", width, height, VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
                     VK_IMAGE_ASPECT_DEPTH_BIT);
-    ensure_size(device, visibility, "visible triangles", uint64_t(width) * height * 4);
+    ensure_size(device, visibility, "visible triangles", uint64_t(width) * height * sizeof(SurfaceId));
 }
 
 std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame,
@@ -24,7 +24,8 @@ std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame
                                      {"colors", scene.colors},
                                      {"triangle_materials", scene.triangle_materials},
                                      {"positions", scene.triangles.positions},
-                                     {"triangles", scene.triangles.triangles}};
+                                     {"triangles", scene.triangles.triangles},
+                                     {"instances", scene.instances.table()}};
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;
 }
@@ -40,7 +41,8 @@ void record_primary(Commands& commands, Device& device, const GpuScene& scene, c
                   {"rays", level.rays},
                   {"states", level.states},
                   {"hits", level.hits},
-                  {"queue", queues.counters()}},
+                  {"queue", queues.counters()},
+                  {"instances", scene.instances.table()}},
                  params, groups_for(params.capacity, 64));
 }
 

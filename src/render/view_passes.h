@@ -10,7 +10,7 @@ namespace peelray {
 /// What a view is drawn into.
 struct ViewTarget {
     Buffer frame;       ///< one Frame: the view's constants
-    Buffer visibility;  ///< the triangle that each pixel sees, row by row; ~0: none
+    Buffer visibility;  ///< SurfaceId of what each pixel sees, row by row; triangle ~0: nothing
     Image2D color, depth;
 
     explicit ViewTarget(Device& device) : frame(device, "frame constants", sizeof(Frame)) {}

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/scene.h"
+#include "scene/motion.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -35,14 +35,6 @@ void make_unit(std::vector<float>& rotation) {
     for (float& v : rotation) v = float(v / length);
 }
 
-const Animation* find(const Scene& scene, const std::string& which) {
-    for (size_t i = 0; i < scene.animations.size(); i++)
-        if (scene.animations[i].name == which) return &scene.animations[i];
-    for (size_t i = 0; i < scene.animations.size(); i++)
-        if (std::to_string(i) == which) return &scene.animations[i];
-    return nullptr;
-}
-
 void apply(const AnimationChannel& channel, float time, Scene& scene, std::vector<Placement>& placements) {
     const std::vector<float> v = channel.at(time);
     Placement& placement = placements[size_t(channel.node)];
@@ -70,9 +62,10 @@ void carry_along(Scene& scene) {
         const Pose pose(worlds[i]);
         if (node.camera >= 0) {
             Camera& camera = scene.cameras[size_t(node.camera)];
-            const float distance = glm::length(camera.look - camera.eye);
+            // Taken once: from moment to moment it would drift by a rounding.
+            if (camera.look_distance == 0) camera.look_distance = glm::length(camera.look - camera.eye);
             camera.eye = pose.at;
-            camera.look = pose.at + pose.ahead * distance;
+            camera.look = pose.at + pose.ahead * camera.look_distance;
             camera.up = pose.up;
         }
         if (node.light >= 0) {
@@ -81,6 +74,41 @@ void carry_along(Scene& scene) {
             light.direction = pose.ahead;
         }
     }
+}
+
+/// Is the animation that makes go on what is generated among these?
+bool generates(const Scene& scene, const std::vector<const Animation*>& animations) {
+    return std::any_of(animations.begin(), animations.end(), [&](const Animation* animation) {
+        return animation - scene.animations.data() == scene.generated.animation;
+    });
+}
+
+/// Does the channel ever change what it sets? Exporters write many that do not.
+bool varies(const AnimationChannel& channel) {
+    const bool cubic = channel.interpolation == Interpolation::cubic;
+    const size_t width = channel.width, stride = width * (cubic ? 3 : 1);
+    for (size_t i = 0; i < channel.values.size(); i++) {
+        const bool tangent = cubic && i % stride / width != 1;
+        if (channel.values[i] != (tangent ? 0 : channel.values[(cubic ? width : 0) + i % width])) return true;
+    }
+    return false;
+}
+
+void pose(Scene& scene, const std::vector<const Animation*>& animations, double time) {
+    std::vector<Placement> placements;
+    for (Node& node : scene.nodes) {
+        placements.push_back(node.rest);
+        node.weights = node.rest_weights;
+    }
+    for (const Animation* animation : animations) {
+        const double past =
+            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
+        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), scene, placements);
+    }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
+    scene.generated.time = generates(scene, animations) ? time : 0;
+    carry_along(scene);
 }
 
 }  // namespace
@@ -125,6 +153,24 @@ std::vector<glm::mat4> world_matrices(const Scene& scene) {
     return worlds;
 }
 
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which) {
+    const std::vector<Animation>& list = scene.animations;
+    if (list.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
+    if (which == "all") {
+        std::vector<const Animation*> all;
+        for (const Animation& animation : list) all.push_back(&animation);
+        return all;
+    }
+    for (size_t i = 0; i < list.size(); i++)
+        if (list[i].name == which) return {&list[i]};
+    for (size_t i = 0; i < list.size(); i++)
+        if (std::to_string(i) == which) return {&list[i]};
+    std::string names;
+    for (size_t i = 0; i < list.size(); i++)
+        names += fmt::format("{}{}: {}", i ? ", " : "", i, list[i].name.empty() ? "(no name)" : list[i].name);
+    fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
+}
+
 void complete_targets(Scene& scene) {
     for (Mesh& mesh : scene.meshes)
         for (Primitive& primitive : mesh.primitives)
@@ -133,29 +179,32 @@ void complete_targets(Scene& scene) {
 
 void animate(Scene& scene, const std::string& which, double time) {
     complete_targets(scene);
-    if (scene.animations.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
-    const Animation* one = which == "all" ? nullptr : find(scene, which);
-    if (which != "all" && !one) {
-        std::string names;
-        for (size_t i = 0; i < scene.animations.size(); i++)
-            names += fmt::format("{}{}: {}", i ? ", " : "", i,
-                                 scene.animations[i].name.empty() ? "(no name)" : scene.animations[i].name);
-        fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
-    }
-    std::vector<Placement> placements;
-    for (Node& node : scene.nodes) {
-        placements.push_back(node.rest);
-        node.weights = node.rest_weights;
-    }
-    for (const Animation& animation : scene.animations) {
-        if (one && &animation != one) continue;
-        const double past =
-            animation.duration > 0 && time > animation.duration ? std::fmod(time, animation.duration) : time;
-        for (const AnimationChannel& channel : animation.channels) apply(channel, float(past), scene, placements);
-    }
-    for (size_t i = 0; i < scene.nodes.size(); i++)
-        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
-    carry_along(scene);
+    pose(scene, find_animations(scene, which), time);
+}
+
+void stand_at_rest(Scene& scene) {
+    pose(scene, {}, 0);
+}
+
+Motion motion_of(const Scene& scene, const std::string& which) {
+    const std::vector<bool> none(scene.nodes.size(), false);
+    Motion motion{none, none, none};
+    if (which.empty()) return motion;
+    const std::vector<const Animation*> chosen = find_animations(scene, which);
+    for (const Animation* animation : chosen)
+        for (const AnimationChannel& channel : animation->channels) {
+            if (!varies(channel)) continue;
+            const auto node = size_t(channel.node);
+            (channel.path == Path::weights ? motion.morphs : motion.moves)[node] = true;
+            if (channel.path == Path::scale) motion.scales[node] = true;
+        }
+    motion.generates = generates(scene, chosen);
+    if (!motion.generates) return motion;
+    for (const Water& water : scene.generated.waters)
+        for (const Water::Float& f : water.floats) motion.moves[size_t(f.node)] = true;
+    for (const Swarm& swarm : scene.generated.swarms)
+        for (const int node : swarm.nodes) motion.moves[size_t(node)] = true;
+    return motion;
 }
 
 }  // namespace peelray

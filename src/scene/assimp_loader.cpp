@@ -24,8 +24,10 @@ const std::string virtual_folder = "@/";
 /// Shows Assimp the scene file (already read) and the files beside it, under a made-up folder name, and nothing else.
 class FolderIo : public Assimp::IOSystem {
   public:
-    FolderIo(std::filesystem::path folder, std::string main_name, const Bytes& main_bytes)
-        : folder_(std::move(folder)), main_name_(std::move(main_name)), main_bytes_(main_bytes) {}
+    /// `files`: those that were read are added.
+    FolderIo(std::filesystem::path folder, std::string main_name, const Bytes& main_bytes,
+             std::vector<std::filesystem::path>& files)
+        : folder_(std::move(folder)), main_name_(std::move(main_name)), main_bytes_(main_bytes), files_(files) {}
 
     bool Exists(const char* file) const override {
         return file == main_name_ || const_cast<FolderIo*>(this)->find(file) != nullptr;
@@ -45,7 +47,9 @@ class FolderIo : public Assimp::IOSystem {
         std::string relative(file.starts_with(virtual_folder) ? file.substr(virtual_folder.size()) : file);
         std::replace(relative.begin(), relative.end(), '\\', '/');
         try {
-            side_files_.push_back(read_file(resolve_inside(folder_, relative, "material library")));
+            const std::filesystem::path path = resolve_inside(folder_, relative, "material library");
+            side_files_.push_back(read_file(path));
+            remember_file(files_, path);
             return &side_files_.back();
         } catch (const Error&) {
             return nullptr;
@@ -55,6 +59,7 @@ class FolderIo : public Assimp::IOSystem {
     std::filesystem::path folder_;
     std::string main_name_;
     const Bytes& main_bytes_;
+    std::vector<std::filesystem::path>& files_;
     std::list<Bytes> side_files_;  ///< a list: streams point into its elements
 };
 
@@ -180,6 +185,7 @@ const aiScene* import(Assimp::Importer& importer, const std::string& file, const
 Scene load_assimp(const std::filesystem::path& path, const std::string& extension) {
     Scene scene;
     scene.name = printable(path.filename().string());
+    scene.files = {path};
     Bytes bytes = read_file(path);
     if (bytes.empty()) fail("{}: the file is empty", scene.name);
     if (extension == ".obj") note_missing_libraries(bytes, path.parent_path(), scene.notes);
@@ -195,7 +201,7 @@ Scene load_assimp(const std::filesystem::path& path, const std::string& extensio
     if (extension == ".off") check_off(bytes, scene.name);
     const std::string file = virtual_folder + path.stem().string() + extension;
     Assimp::Importer importer;
-    importer.SetIOHandler(new FolderIo(path.parent_path(), file, bytes));  // the importer deletes it
+    importer.SetIOHandler(new FolderIo(path.parent_path(), file, bytes, scene.files));  // the importer deletes it
     try {
         const aiScene* from = import(importer, file, scene.name);
         for (unsigned i = 0; i < from->mNumMaterials; ++i)

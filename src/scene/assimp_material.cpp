@@ -42,7 +42,9 @@ void read_texture(const aiMaterial& from, const std::filesystem::path& folder, S
     if (out.base_color_texture >= 0) return;
     try {
         const std::string where = fmt::format("texture \"{}\"", printable(relative, 80));
-        Texture texture = decode_image(read_file(resolve_inside(folder, relative, where)), where);
+        const std::filesystem::path path = resolve_inside(folder, relative, where);
+        Texture texture = decode_image(read_file(path), where);
+        remember_file(scene.files, path);
         texture.name = relative;
         out.base_color_texture = static_cast<int>(scene.textures.size());
         scene.textures.push_back(std::move(texture));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -12,17 +13,20 @@ std::vector<BuiltinScene> builtin_scenes() {
             {"glass", "a glass sphere, torus and block one behind the other, and a mirror"},
             {"tree", "a tree with tens of thousands of leaves, for shadows"},
             {"walker", "a figure that walks over a mirror, behind and in front of glass"},
-            {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"}};
+            {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"},
+            {"waves", "a pool with swimming things; waves:N for some N triangles of water (8 to 10000000)"},
+            {"particles", "a fountain of small bodies over a mirror; particles:N for N of them (8 to 1000000)"}};
 }
 
 namespace {
 
-uint64_t parse_count(std::string_view digits) {
+/// The N of builtin:NAME:N.
+uint64_t parse_count(const char* name, std::string_view digits, uint64_t most) {
     uint64_t count = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
-    if (error != std::errc() || end != digits.data() + digits.size() || count < 8 || count > 10'000'000)
-        fail("builtin:blob:{}: N must be a whole number from 8 to 10000000, as in builtin:blob:120000",
-             printable(digits, 40));
+    if (error != std::errc() || end != digits.data() + digits.size() || count < 8 || count > most)
+        fail("builtin:{}:{}: N must be a whole number from 8 to {}, as in builtin:{}:120000", name, printable(digits, 40),
+             most, name);
     return count;
 }
 
@@ -33,8 +37,12 @@ Scene make_builtin(std::string_view name) {
     if (name == "glass") return make_glass();
     if (name == "tree") return make_tree();
     if (name == "walker") return make_walker();
-    if (name == "blob") return make_blob(parse_count(""));
-    if (name.starts_with("blob:")) return make_blob(parse_count(name.substr(5)));
+    if (name == "waves") return make_waves(32'768);
+    if (name == "particles") return make_particles(3'000);
+    if (name == "blob" || name.starts_with("blob:"))
+        return make_blob(parse_count("blob", name.substr(std::min<size_t>(name.size(), 5)), 10'000'000));
+    if (name.starts_with("waves:")) return make_waves(parse_count("waves", name.substr(6), 10'000'000));
+    if (name.starts_with("particles:")) return make_particles(parse_count("particles", name.substr(10), 1'000'000));
     std::string known;
     for (const BuiltinScene& scene : builtin_scenes())
         known += fmt::format("{}{}", known.empty() ? "" : ", ", scene.name);

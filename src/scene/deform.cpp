@@ -1,7 +1,9 @@
 #include "scene/deform.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/error.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -49,18 +51,15 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
     if (skinned) joints = joint_matrices(scene.skins[size_t(node.skin)], worlds);
     glm::mat4 matrix = world;
     NormalTransform to_normal(world);
-    size_t mirrored = 0;
     for (size_t i = 0; i < out.positions.size(); i++) {
         if (skinned) {
             matrix = blended(primitive.joints[i], joints, world);
             to_normal = NormalTransform(matrix);
         }
-        mirrored += to_normal.mirrors;
+        if (i == 0) out.mirrors = to_normal.mirrors;
         out.positions[i] = glm::vec3(matrix * glm::vec4(out.positions[i], 1));
         out.normals[i] = to_normal(out.normals[i], primitive.normals[i]);
     }
-    // Joints may disagree, one of them scaled to nothing or inside out: most vertices decide.
-    out.mirrors = 2 * mirrored > out.positions.size();
     if (primitive.flat)
         for (const glm::uvec3& t : primitive.triangles) {
             const glm::dvec3 a = out.positions[t.x], b = out.positions[t.y], c = out.positions[t.z];
@@ -68,6 +67,32 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
             out.normals[t.x] = out.normals[t.y] = out.normals[t.z] = normal;
         }
     return out;
+}
+
+Deformed transformed(const Primitive& primitive, const glm::mat4& matrix) {
+    const NormalTransform to_normal(matrix);
+    Deformed out;
+    out.mirrors = to_normal.mirrors;
+    out.positions.reserve(primitive.positions.size());
+    out.normals.reserve(primitive.normals.size());
+    for (const glm::vec3& p : primitive.positions) out.positions.push_back(glm::vec3(matrix * glm::vec4(p, 1)));
+    for (const glm::vec3& normal : primitive.normals)
+        out.normals.push_back(to_normal(normal, unit_or(normal, glm::vec3(0, 1, 0))));
+    return out;
+}
+
+void check_finite(const glm::vec3& p, const Node& node, size_t vertex) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",
+             node.name, vertex);
+}
+
+void check_size(const Scene& scene, uint64_t vertices, uint64_t triangles) {
+    if (triangles == 0) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
+    constexpr uint64_t limit = uint64_t(1) << 29;
+    if (vertices > limit || triangles > limit)
+        fail("{}: {} vertices and {} triangles with all instances, at most {} of each are supported; split the scene",
+             scene.name, vertices, triangles, limit);
 }
 
 }  // namespace peelray

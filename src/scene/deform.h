@@ -24,4 +24,13 @@ inline bool is_rigid(const Primitive& primitive, const Node& node) {
 Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive, std::span<const float> weights,
                 std::span<const glm::mat4> worlds, const glm::mat4& world);
 
+/// The same for a primitive whose shape at rest is all that there is.
+Deformed transformed(const Primitive& primitive, const glm::mat4& matrix);
+
+/// Throws Error, naming the node, for a vertex that a transform moved out of the range of floats.
+void check_finite(const glm::vec3& position, const Node& node, size_t vertex);
+
+/// Throws Error for more vertices and triangles, with all instances, than are supported, or none.
+void check_size(const Scene& scene, uint64_t vertices, uint64_t triangles);
+
 }  // namespace peelray

@@ -34,6 +34,10 @@ Bytes read_file(const fs::path& path, const std::string& where) {
     return bytes;
 }
 
+void remember_file(std::vector<fs::path>& files, const fs::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+}
+
 namespace {
 
 int hex_digit(char c) {

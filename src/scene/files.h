@@ -14,6 +14,9 @@ using Bytes = std::vector<uint8_t>;
 /// The whole file. Throws Error when it is missing, no regular file, or unreadable; `where` says who asked for it.
 Bytes read_file(const std::filesystem::path& path, const std::string& where = "");
 
+/// Adds a file to those that were read, unless it is there already.
+void remember_file(std::vector<std::filesystem::path>& files, const std::filesystem::path& file);
+
 /// Undoes %XX. Throws Error (prefixed with `where`) for a stray '%' or a NUL byte.
 std::string percent_decode(std::string_view text, const std::string& where);
 

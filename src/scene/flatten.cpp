@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "scene/deform.h"
 #include "scene/scene.h"
 #include "scene/transform.h"
@@ -28,13 +27,6 @@ Totals count(const Scene& scene) {
     return totals;
 }
 
-void append_position(Geometry& out, const glm::vec3& p, const Node& node, size_t vertex) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",
-             node.name, vertex);
-    out.positions.push_back(p);
-}
-
 /// Texture coordinates and colours of a primitive whose positions were appended.
 void append_attributes(Geometry& out, const Primitive& primitive, const Totals& totals) {
     if (primitive.uvs.empty())
@@ -47,17 +39,10 @@ void append_attributes(Geometry& out, const Primitive& primitive, const Totals& 
         out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
 }
 
-void append_rigid(Geometry& out, const Primitive& primitive, const glm::mat4& world, const NormalTransform& to_normal,
-                  const Node& node) {
-    for (size_t i = 0; i < primitive.positions.size(); ++i)
-        append_position(out, glm::vec3(world * glm::vec4(primitive.positions[i], 1)), node, i);
-    for (const glm::vec3& normal : primitive.normals)
-        out.normals.push_back(to_normal(normal, unit_or(normal, glm::vec3(0, 1, 0))));
-}
-
-void append_deformed(Geometry& out, const Deformed& deformed, const Node& node) {
-    for (size_t i = 0; i < deformed.positions.size(); ++i) append_position(out, deformed.positions[i], node, i);
-    out.normals.insert(out.normals.end(), deformed.normals.begin(), deformed.normals.end());
+void append_vertices(Geometry& out, const Deformed& vertices, const Node& node) {
+    for (size_t i = 0; i < vertices.positions.size(); ++i) check_finite(vertices.positions[i], node, i);
+    out.positions.insert(out.positions.end(), vertices.positions.begin(), vertices.positions.end());
+    out.normals.insert(out.normals.end(), vertices.normals.begin(), vertices.normals.end());
 }
 
 void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first, bool mirrors) {
@@ -79,11 +64,7 @@ void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first,
 
 Geometry flatten(const Scene& scene) {
     const Totals totals = count(scene);
-    if (totals.triangles == 0) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
-    constexpr uint64_t limit = uint64_t(1) << 29;
-    if (totals.vertices > limit || totals.triangles > limit)
-        fail("{}: {} vertices and {} triangles with all instances, at most {} of each are supported; split the scene",
-             scene.name, totals.vertices, totals.triangles, limit);
+    check_size(scene, totals.vertices, totals.triangles);
     Geometry out;
     out.positions.reserve(totals.vertices);
     out.normals.reserve(totals.vertices);
@@ -98,21 +79,16 @@ Geometry flatten(const Scene& scene) {
         const Node& node = scene.nodes[n];
         if (node.mesh < 0) continue;
         const Mesh& mesh = scene.meshes[static_cast<size_t>(node.mesh)];
-        const NormalTransform to_normal(worlds[n]);
         const auto first_triangle = static_cast<uint32_t>(out.triangles.size());
         for (const Primitive& primitive : mesh.primitives) {
             const auto first = static_cast<uint32_t>(out.positions.size());
-            bool mirrors = to_normal.mirrors;
-            if (is_rigid(primitive, node)) {
-                append_rigid(out, primitive, worlds[n], to_normal, node);
-            } else {
-                const std::vector<float>& weights = node.weights.empty() ? mesh.weights : node.weights;
-                const Deformed deformed = deform(scene, node, primitive, weights, worlds, worlds[n]);
-                append_deformed(out, deformed, node);
-                mirrors = deformed.mirrors;
-            }
+            const std::vector<float>& weights = node.weights.empty() ? mesh.weights : node.weights;
+            const Deformed vertices = is_rigid(primitive, node)
+                                          ? transformed(primitive, worlds[n])
+                                          : deform(scene, node, primitive, weights, worlds, worlds[n]);
+            append_vertices(out, vertices, node);
             append_attributes(out, primitive, totals);
-            append_triangles(out, primitive, first, mirrors);
+            append_triangles(out, primitive, first, vertices.mirrors);
         }
         const auto count = static_cast<uint32_t>(out.triangles.size()) - first_triangle;
         if (count > 0) out.objects.push_back({first_triangle, count});

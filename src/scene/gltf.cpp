@@ -28,6 +28,7 @@ Scene load_gltf(const std::filesystem::path& path) {
     loader.read_skins();
     loader.read_animations();
     loader.write_notes();
+    loader.scene.files = loader.file.files();
     return std::move(loader.scene);
 }
 

@@ -65,7 +65,7 @@ void append_chunk(Bytes& glb, uint32_t type, std::span<const uint8_t> bytes, uin
 }  // namespace
 
 GltfFile::GltfFile(const std::filesystem::path& path)
-    : name_(printable(path.filename().string())), folder_(path.parent_path()) {
+    : name_(printable(path.filename().string())), folder_(path.parent_path()), files_{path} {
     const Bytes bytes = read_file(path);
     if (bytes.empty()) fail("{}: the file is empty", name_);
     const bool is_glb = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
@@ -144,7 +144,7 @@ void GltfFile::load(const std::string& text, const Glb* glb) {
         {[](const std::string& name, void*) { return std::isdigit(static_cast<unsigned char>(name[0])) != 0; },
          [](const std::string& name, void*) { return name; },
          [](Bytes* out, std::string*, const std::string& name, void* self) {
-             *out = static_cast<const GltfFile*>(self)->read_buffer(std::stoul(name));
+             *out = static_cast<GltfFile*>(self)->read_buffer(std::stoul(name));
              return true;
          },
          nullptr, this});
@@ -170,13 +170,16 @@ void GltfFile::load(const std::string& text, const Glb* glb) {
     if (!is_loaded) fail("{}: not a valid glTF file: {}", name_, printable(errors, 300));
 }
 
-Bytes GltfFile::read_uri(const std::string& uri, const std::string& where) const {
-    return is_data_uri(uri) ? decode_data_uri(uri, where)
-                            : read_file(resolve_inside(folder_, percent_decode(uri, where), where), where);
+Bytes GltfFile::read_uri(const std::string& uri, const std::string& where) {
+    if (is_data_uri(uri)) return decode_data_uri(uri, where);
+    const std::filesystem::path path = resolve_inside(folder_, percent_decode(uri, where), where);
+    Bytes bytes = read_file(path, where);
+    remember_file(files_, path);
+    return bytes;
 }
 
 /// Exactly byteLength bytes: a file may be longer, tinygltf insists.
-Bytes GltfFile::read_buffer(size_t index) const {
+Bytes GltfFile::read_buffer(size_t index) {
     const auto& [uri, length] = buffer_sources_.at(index);
     Bytes bytes = read_uri(uri, where("buffers", index) + ".uri");
     if (bytes.size() < length)

@@ -26,6 +26,8 @@ class GltfFile {
     GltfFile& operator=(const GltfFile&) = delete;
 
     const std::string& name() const { return name_; }  ///< the file's name without folder, for messages
+    /// The files that were read so far, this one first.
+    const std::vector<std::filesystem::path>& files() const { return files_; }
     /// All indices in it are in range, and vectors have the format's length or none at all.
     const tinygltf::Model& model() const { return model_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
@@ -64,8 +66,8 @@ class GltfFile {
     Glb split_glb(std::span<const uint8_t> all) const;
     void take_uris(nlohmann::json& json, std::optional<size_t> glb_bytes);
     void load(const std::string& text, const Glb* glb);
-    Bytes read_uri(const std::string& uri, const std::string& where) const;
-    Bytes read_buffer(size_t index) const;
+    Bytes read_uri(const std::string& uri, const std::string& where);
+    Bytes read_buffer(size_t index);
     std::span<const uint8_t> view(int index) const;
     Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count,
                       size_t element_size) const;
@@ -75,6 +77,7 @@ class GltfFile {
 
     std::string name_;
     std::filesystem::path folder_;
+    std::vector<std::filesystem::path> files_;
     tinygltf::Model model_;
     struct BufferSource {
         std::string uri;

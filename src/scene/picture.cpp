@@ -7,16 +7,32 @@
 
 namespace peelray {
 
-bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp) {
-    return std::any_of(geometry.materials.begin(), geometry.materials.end(), [&](uint32_t index) {
-        const Material& m = scene.materials[index];
-        return !m.unlit && (transmits(m) || is_reflection_traced(m.roughness, m.metallic > 0.5f, spp));
+bool is_reflective(const Scene& scene, uint32_t spp) {
+    const auto reflects = [&](const Primitive& primitive) {
+        const Material& m = scene.materials[primitive.material];
+        return !primitive.triangles.empty() && !m.unlit &&
+               (transmits(m) || is_reflection_traced(m.roughness, m.metallic > 0.5f, spp));
+    };
+    return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
+        if (node.mesh < 0) return false;
+        const std::vector<Primitive>& primitives = scene.meshes[size_t(node.mesh)].primitives;
+        return std::any_of(primitives.begin(), primitives.end(), reflects);
     });
 }
 
 glm::vec2 sample_position(uint32_t index) {
     const double x = 0.5 + index * 0.7548776662466927, y = 0.5 + index * 0.5698402909980532;
     return {float(x - std::floor(x)), float(y - std::floor(y))};
+}
+
+Camera turned(const Camera& camera, double turn) {
+    Camera out = camera;
+    if (turn == 0) return out;
+    const double angle = 2 * 3.14159265358979323846 * turn, c = std::cos(angle), s = std::sin(angle);
+    const auto rotate = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
+    out.eye = glm::vec3(glm::dvec3(camera.look) + rotate(glm::dvec3(camera.eye) - glm::dvec3(camera.look)));
+    out.up = glm::vec3(rotate(camera.up));
+    return out;
 }
 
 View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {

@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/bounds.h"
 
 namespace peelray {
 
@@ -15,6 +16,9 @@ enum class Tonemap : uint8_t { none, aces, neutral };
 struct PictureSettings {
     uint32_t width = 1280, height = 1024;  ///< pixels
     Camera camera;
+    /// What the view's near and far planes follow from, the same for all frames of an animation; none: the triangles'
+    /// box.
+    std::optional<Box> bounds;
     uint32_t bounces = 4;                                      ///< secondary rays in a row, 0 to 16
     uint32_t spp = 1;                                          ///< samples per pixel, at least 1
     bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
@@ -57,7 +61,7 @@ inline bool is_reflection_traced(float roughness, bool metallic, uint32_t spp) {
 }
 
 /// Does any surface start reflected or refracted rays? Rough ones do not (docs/frame.md section 4).
-bool is_reflective(const Scene& scene, const Geometry& geometry, uint32_t spp);
+bool is_reflective(const Scene& scene, uint32_t spp);
 
 /// Where sample `index` lies in its pixel, [0, 1)²: the R2 sequence (Roberts 2018), whose first member is the centre;
 /// any prefix of it is spread evenly.
@@ -72,6 +76,10 @@ struct View {
     float near = 0;  ///< nearer surfaces may be cut away: a tiny share of the scene
     float far = 0;   ///< nothing of the scene lies beyond
 };
+
+/// `camera` after it went `turn` of a full circle around the vertical line through its look point, counter-clockwise as
+/// seen from above, at the same height and distance. 0: the very same camera.
+Camera turned(const Camera& camera, double turn);
 
 /// `lower`, `upper`: the scene's box. Throws Error for a view without direction (eye = look, up along the view, a field
 /// of view outside (0°, 180°)), naming the option.

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/generated.h"
+
 namespace peelray {
 
 /// An image of 8-bit RGBA texels, row 0 first (the glTF order: v = 0 is the first row). Colour is sRGB-encoded, alpha
@@ -98,6 +100,7 @@ struct Camera {
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
+    float look_distance = 0;        ///< of look from eye while a node carries it; 0: it was not carried yet
 };
 
 struct Light {
@@ -151,7 +154,8 @@ struct Animation {
 };
 
 struct Scene {
-    std::string name;  ///< "builtin:teapots" or the file's name
+    std::string name;                          ///< "builtin:teapots" or the file's name
+    std::vector<std::filesystem::path> files;  ///< all that were read for it, its own first, each once; built-in: none
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
@@ -160,6 +164,7 @@ struct Scene {
     std::vector<Light> lights;    ///< in world space
     std::vector<Skin> skins;
     std::vector<Animation> animations;
+    Generated generated;  ///< what is computed for every moment, if anything is
     std::vector<std::string> extensions_used;         ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
     std::vector<std::string>
@@ -203,16 +208,22 @@ std::vector<BuiltinScene> builtin_scenes();
 /// impossible N.
 Scene make_builtin(std::string_view name);
 
+/// The animations that `which` stands for: a name, an index or "all". Throws Error for an unknown animation, listing
+/// those there are, and for a scene without any.
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
+
 /// Makes the morph targets that were left for later. animate() begins with it; call it before looking at
 /// Primitive::targets of a scene that was not animated yet.
 void complete_targets(Scene& scene);
 
 /// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
 /// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
-/// `which`: a name, an index or "all" (of two that move the same, the later one wins). The result depends on nothing
-/// that was done to the scene before. Throws Error for an unknown animation, listing those there are, and for a scene
-/// without any.
+/// `which`: see find_animations(); of two that move the same, the later one wins. The result depends on nothing that
+/// was done to the scene before. Throws Error like find_animations().
 void animate(Scene& scene, const std::string& which, double time);
+
+/// Undoes animate().
+void stand_at_rest(Scene& scene);
 
 /// World matrices of all nodes.
 std::vector<glm::mat4> world_matrices(const Scene& scene);

@@ -10,16 +10,21 @@ uint32_t SceneBuilder::material(Material material) {
     return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
-void SceneBuilder::add(const char* name, Primitive shape, uint32_t material, const glm::mat4& transform) {
+int SceneBuilder::add(const char* name, Primitive shape, uint32_t material, const glm::mat4& transform) {
     shape.material = material;
-    Node node;
-    node.name = name;
-    node.local = transform;
-    node.mesh = static_cast<int>(scene_.meshes.size());
     Mesh mesh{name, {}};
     mesh.primitives.push_back(std::move(shape));
     scene_.meshes.push_back(std::move(mesh));
+    return again(name, static_cast<int>(scene_.meshes.size()) - 1, transform);
+}
+
+int SceneBuilder::again(const char* name, int mesh, const glm::mat4& transform) {
+    Node node;
+    node.name = name;
+    node.local = transform;
+    node.mesh = mesh;
     scene_.nodes.push_back(std::move(node));
+    return static_cast<int>(scene_.nodes.size()) - 1;
 }
 
 int SceneBuilder::tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions) {

@@ -13,6 +13,8 @@ Scene make_glass();
 Scene make_tree();
 Scene make_walker();
 Scene make_blob(uint64_t triangles);
+Scene make_waves(uint64_t triangles);
+Scene make_particles(uint64_t count);
 
 /// Collects a scene: one node with one mesh of one primitive per object.
 class SceneBuilder {
@@ -20,7 +22,11 @@ class SceneBuilder {
     explicit SceneBuilder(const char* name) { scene_.name = name; }
 
     uint32_t material(Material material);
-    void add(const char* name, Primitive shape, uint32_t material, const glm::mat4& transform = glm::mat4(1));
+    /// Returns the index of the node.
+    int add(const char* name, Primitive shape, uint32_t material, const glm::mat4& transform = glm::mat4(1));
+    /// A mesh once more.
+    int again(const char* name, int mesh, const glm::mat4& transform);
+    int mesh_of(int node) const { return scene_.nodes[size_t(node)].mesh; }
     /// A texture of n×n tiles in two sRGB colours (0xBBGGRR), alternating in u, or in u and v.
     int tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions);
     void camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees);

@@ -1,4 +1,4 @@
-// What loaders, animation and flattening share about directions and transforms. Private to src/scene.
+// What loaders, animation, flattening and the deformer on the GPU share about directions and transforms.
 #pragma once
 
 #include <cmath>

@@ -184,8 +184,8 @@ TEST_F(CompareCommand, AnInterruptLeavesNothing) {
         Words arguments = work;
         arguments.insert(arguments.end(), {"--spp", "4096", "--size", "320x256"});
         // `timeout` sends the signal after a while, as a user's Ctrl-C would, and ends with the program's own status.
-        std::string line =
-            "XDG_CACHE_HOME='" PEELRAY_CACHE "' timeout --preserve-status --signal=INT 2.5 '" PEELRAY_PROGRAM "'";
+        std::string line = "XDG_CACHE_HOME='" PEELRAY_CACHE
+                           "' timeout --foreground --preserve-status --signal=INT 2.5 '" PEELRAY_PROGRAM "'";
         for (const std::string& word : arguments) line += " '" + word + "'";
         line +=
             " > '" + (folder / "scratch/o").string() + "' 2> '" + (folder / "scratch/e").string() + "'; test $? -eq 1";

@@ -29,39 +29,52 @@ struct Outcome {
     }
 };
 
-/// Starts the program with `variables` added to the environment and waits for it.
-inline Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& scratch,
-                           const std::map<std::string, std::string>& variables = {}) {
+/// The program at work.
+struct Running {
+    pid_t process = -1;
+    std::filesystem::path out, err;  ///< where its output goes
+
+    Outcome wait() const {
+        int status = 0;
+        ::waitpid(process, &status, 0);
+        Outcome run;
+        run.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+        const auto text = [](const std::string& path) -> std::string {
+            if (!std::filesystem::is_regular_file(path)) return "";
+            std::ifstream file(path, std::ios::binary);
+            return std::string(std::istreambuf_iterator<char>(file), {});
+        };
+        run.out = text(out);
+        run.err = text(err);
+        return run;
+    }
+};
+
+/// Starts the program with `variables` added to the environment. `name`: a different one for each at the same time.
+/// `own_group`: as a shell starts it on a terminal.
+inline Running start_program(const std::vector<std::string>& arguments, const std::filesystem::path& scratch,
+                             const std::map<std::string, std::string>& variables = {}, const std::string& name = "",
+                             bool own_group = false) {
     std::vector<char*> argv;
     std::string program = PEELRAY_PROGRAM;
     std::vector<std::string> copies = arguments;
     argv.push_back(program.data());
     for (std::string& text : copies) argv.push_back(text.data());
     argv.push_back(nullptr);
-    const std::string out = scratch / "stdout", err = scratch / "stderr";
-    const pid_t child = ::fork();
-    if (child == 0) {
+    Running running{-1, scratch / ("stdout" + name), scratch / ("stderr" + name)};
+    running.process = ::fork();
+    if (running.process == 0) {
+        if (own_group) ::setpgid(0, 0);
         ::setenv("XDG_CACHE_HOME", PEELRAY_CACHE, 1);
         for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
         const int flags = O_WRONLY | O_CREAT | O_TRUNC;
         ::dup2(::open("/dev/null", O_RDONLY), 0);
-        ::dup2(::open(out.c_str(), flags, 0600), 1);
-        ::dup2(::open(err.c_str(), flags, 0600), 2);
+        ::dup2(::open(running.out.c_str(), flags, 0600), 1);
+        ::dup2(::open(running.err.c_str(), flags, 0600), 2);
         ::execv(program.c_str(), argv.data());
         ::_exit(127);
     }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    Outcome run;
-    run.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    const auto text = [](const std::string& path) -> std::string {
-        if (!std::filesystem::is_regular_file(path)) return "";
-        std::ifstream file(path, std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(file), {});
-    };
-    run.out = text(out);
-    run.err = text(err);
-    return run;
+    return running;
 }
 
 /// `folder` holds the inputs, out/ the outputs, scratch/ what the program has no business with.
@@ -75,7 +88,11 @@ class ProgramTest : public TempFolder {
 
     Outcome run(const std::vector<std::string>& arguments,
                 const std::map<std::string, std::string>& variables = {}) const {
-        return run_program(arguments, folder / "scratch", variables);
+        return start(arguments, variables).wait();
+    }
+    Running start(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& variables = {},
+                  const std::string& name = "", bool own_group = false) const {
+        return start_program(arguments, folder / "scratch", variables, name, own_group);
     }
     std::string in(const std::string& name) const { return folder / name; }
     std::string out(const std::string& name) const { return folder / "out" / name; }

@@ -132,9 +132,7 @@ TEST_F(Usage, NotBuiltYet) {
                     {{"--tracer", "khr"}, "not built into this version: use --tracer ldc"},
                     {{"--hit", "tolerance"}, "not built into this version"},
                     {{"--traversal", "mipmap"}, "not built into this version"},
-                    {{"--traversal", "two-level"}, "not built into this version"},
-                    {{"--fps", "30"}, "not built into this version"},
-                    {{"--frames", "0:9", "--fps", "30"}, "not built into this version"}});
+                    {{"--traversal", "two-level"}, "not built into this version"}});
     expect_refused(run({"bench", "--scenes", "all"}), 1, "'bench' is not built into this version");
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
 }
@@ -153,9 +151,10 @@ TEST_F(Usage, HelpMentionsEveryOption) {
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
-         {"SCENE",      "-o,",       "--size",   "--eye",           "--look",         "--up",      "--fov",
-          "--camera",   "--env",     "--sky",    "--background",    "--exposure",     "--tonemap", "--bounces",
-          "--spp",      "--effects", "--time",   "--animation",     "--frames",       "--fps",     "--aov",
+         {"SCENE",      "-o,",       "--size",   "--eye",           "--look",         "--up",
+          "--fov",      "--camera",  "--env",    "--sky",           "--background",   "--exposure",
+          "--tonemap",  "--bounces", "--spp",    "--effects",       "--time",         "--animation",
+          "--frames",   "--fps",     "--aov",    "--turntable",     "--shard",        "--resume",
           "--material", "--floor",   "--repeat", "builtin:teapots", "builtin:blob:N", "1280x1024"}},
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat"}},
         {{"info", "--help"}, {"SCENE"}},

@@ -56,6 +56,29 @@ TEST_F(Files, ReplacesAnOldFileAndKeepsItsMode) {
     EXPECT_EQ(fs::status(path).permissions(), fs::perms(0640));
 }
 
+TEST_F(Files, OfManyThatWriteIfAbsentOneDoes) {
+    const fs::path path = folder / "out.json";
+    std::atomic<int> started{0}, wrote{0};
+    std::vector<std::thread> writers;
+    for (int i = 0; i < 8; i++)
+        writers.emplace_back([&, i] {
+            // All have looked and found nothing before the first one is done.
+            wrote += write_if_absent(path, [&](const fs::path& temporary) {
+                write_text(temporary, std::to_string(i));
+                started++;
+                while (started < 8) std::this_thread::yield();
+            });
+        });
+    for (std::thread& writer : writers) writer.join();
+    EXPECT_EQ(wrote, 1);
+    EXPECT_EQ(files(), 1u);
+    const std::string first = get(path);
+    EXPECT_EQ(first.size(), 1u);
+    EXPECT_FALSE(write_if_absent(path, [](const fs::path& temporary) { write_text(temporary, "late"); }));
+    EXPECT_EQ(get(path), first);
+    EXPECT_EQ(files(), 1u);
+}
+
 TEST_F(Files, FollowsALink) {
     fs::create_directory(folder / "there");
     const fs::path target = put("there/real.txt", "old");

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "../gpu/exact_clip.h"
-#include "ldc/cube.h"
+#include "ldc/cubes.h"
 
 namespace peelray::test {
 

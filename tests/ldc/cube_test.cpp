@@ -3,8 +3,8 @@
 
 #include "../gpu/device_fixture.h"
 #include "decoded_cube.h"
-#include "ldc/compute_builder.h"
 #include "scene/scene.h"
+#include "single_cube.h"
 
 namespace peelray {
 namespace {
@@ -110,55 +110,73 @@ Mesh3 from_scene(const char* name) {
     return {geometry.positions, geometry.triangles, geometry.lower, geometry.upper};
 }
 
+/// Every triangle at a hundredth of its size, where it was; the bounds stay.
+Mesh3 shrink(Mesh3 mesh) {
+    for (size_t i = 0; i + 2 < mesh.positions.size(); i += 3) {
+        const vec3 centre = (mesh.positions[i] + mesh.positions[i + 1] + mesh.positions[i + 2]) / 3.0f;
+        for (size_t k = i; k < i + 3; k++) mesh.positions[k] = centre + 0.01f * (mesh.positions[k] - centre);
+    }
+    return mesh;
+}
+
 class CubeTest : public DeviceTest {
   protected:
     struct Built {
-        Cube cube;
+        LdcBody body;
+        LdcCounters counts;
         test::Tables tables;
     };
-    Built build(ComputeBuilder& builder, const Mesh3& mesh, uint32_t resolution, Sampling sampling) {
-        const TriangleBuffers triangles(device(), mesh.positions, mesh.triangles, mesh.lower, mesh.upper);
-        Built built;
-        builder.build(commands(), triangles, built.cube, resolution, sampling);
-        built.tables = test::download(commands(), built.cube);
-        return built;
+    test::SingleCube cube_of(const Mesh3& mesh, uint32_t resolution, Sampling sampling) {
+        return {device(), commands(), mesh.positions, mesh.triangles, mesh.lower, mesh.upper, resolution, sampling};
+    }
+    Built look_at(const test::SingleCube& cube) {
+        return {cube.cubes.download_bodies(commands())[0], cube.counts(),
+                test::download(commands(), cube.cubes, cube.builder.size())};
     }
     Built build(const Mesh3& mesh, uint32_t resolution, Sampling sampling) {
-        ComputeBuilder builder(device());
-        return build(builder, mesh, resolution, sampling);
+        return look_at(cube_of(mesh, resolution, sampling));
     }
 
     /// Compares the cube with the CPU's and checks every sample.
     void expect_right(const Mesh3& mesh, const Built& built, Sampling sampling) {
-        const DecodedCube decoded(built.cube, built.tables);
+        const DecodedCube decoded(built.body, built.tables);
         if (HasFatalFailure()) return;
-        const CpuRaster cpu(built.cube.grid, mesh.positions, mesh.triangles);
+        decoded.expect_whole(built.counts);
+        EXPECT_EQ(expect_right(mesh, built.body, decoded, sampling), built.counts.degenerate);
+        EXPECT_EQ(built.counts.invalid, 0u);
+    }
+    /// The same for one of several bodies, whose triangles are `mesh`; returns how many of them have no area.
+    uint32_t expect_right(const Mesh3& mesh, const LdcBody& body, const DecodedCube& decoded, Sampling sampling) {
+        const CubeGrid& grid = body.grid;
+        const CpuRaster cpu(grid, mesh.positions, mesh.triangles);
         const auto expected = cpu.expect(sampling);
-        EXPECT_EQ(built.cube.counts.degenerate, expected.degenerate);
-        EXPECT_EQ(built.cube.counts.invalid, 0u);
-        std::vector<uint64_t> lost, foreign;
-        std::set_difference(expected.must.begin(), expected.must.end(), decoded.pairs.begin(), decoded.pairs.end(),
+        std::vector<uint64_t> pairs = decoded.pairs, lost, foreign;
+        for (uint64_t& pair : pairs) pair -= uint64_t(body.first_triangle) * 4;
+        std::set_difference(expected.must.begin(), expected.must.end(), pairs.begin(), pairs.end(),
                             std::back_inserter(lost));
-        std::set_difference(decoded.pairs.begin(), decoded.pairs.end(), expected.may.begin(), expected.may.end(),
+        std::set_difference(pairs.begin(), pairs.end(), expected.may.begin(), expected.may.end(),
                             std::back_inserter(foreign));
         EXPECT_TRUE(lost.empty()) << lost.size() << " of " << expected.must.size()
-                                  << " lost; the first: " << describe(built.cube.grid, lost);
-        EXPECT_TRUE(foreign.empty()) << foreign.size() << " of " << decoded.pairs.size()
-                                     << " foreign; the first: " << describe(built.cube.grid, foreign);
-        for (const auto& sample : decoded.samples) {
-            const uint32_t axis = sample.id & 3;
-            ASSERT_EQ(sample.data.y >> 28 & 3, axis);
-            const auto seen = cpu.seen(sample.id >> 2, axis);
-            const dvec3 corner = CpuRaster::permuted(dvec3(sample.voxel), axis);
-            const double w = seen.plane(dvec2(corner) + 0.5) - corner.z,
-                         stored = double(sample.data.x & 0xffff) * 5 / 65535 - 2;
-            // Beside the packing's 4·10⁻⁵: coordinates up to 256 and slopes are floats.
-            ASSERT_NEAR(stored, std::clamp(w, -2.0, 3.0), 4.4e-5 + 3e-4) << "triangle " << (sample.id >> 2);
-            const auto slope = [&](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
-            ASSERT_NEAR(slope(sample.data.y), seen.slope.x, 7.8e-5);
-            ASSERT_NEAR(slope(sample.data.y >> 14), seen.slope.y, 7.8e-5);
-            ASSERT_TRUE(sampling == Sampling::centre || sample.data.x >> 16) << "no coverage";
-        }
+                                  << " lost; the first: " << describe(grid, lost);
+        EXPECT_TRUE(foreign.empty()) << foreign.size() << " of " << pairs.size()
+                                     << " foreign; the first: " << describe(grid, foreign);
+        for (const auto& sample : decoded.samples)
+            expect_sample(sample, cpu, sample.id - 4 * body.first_triangle, sampling);
+        return expected.degenerate;
+    }
+    static void expect_sample(const DecodedCube::Sample& sample, const CpuRaster& cpu, uint32_t id, Sampling sampling) {
+        const uint32_t axis = id & 3;
+        ASSERT_EQ(sample.data.y >> 28 & 3, axis);
+        const auto seen = cpu.seen(id >> 2, axis);
+        const dvec3 corner = CpuRaster::permuted(dvec3(sample.voxel), axis);
+        const double w = seen.plane(dvec2(corner) + 0.5) - corner.z,
+                     stored = double(sample.data.x & 0xffff) * 5 / 65535 - 2;
+        // Beside the packing's 4·10⁻⁵: coordinates up to 256 and slopes are floats.
+        ASSERT_NEAR(stored, std::clamp(w, -2.0, 3.0), 4.4e-5 + 3e-4) << "triangle " << (id >> 2);
+        const auto slope = [&](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
+        ASSERT_NEAR(slope(sample.data.y), seen.slope.x, 7.8e-5);
+        ASSERT_NEAR(slope(sample.data.y >> 14), seen.slope.y, 7.8e-5);
+        ASSERT_TRUE(sampling == Sampling::centre || sample.data.x >> 16) << "no coverage";
     }
     void expect_right(const Mesh3& mesh, uint32_t resolution) {
         for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
@@ -231,7 +249,7 @@ TEST_F(CubeTest, ThousandsOfTrianglesInOneVoxel) {
     }
     for (const uint32_t resolution : {16u, 64u}) {
         expect_right(mesh, resolution);
-        EXPECT_GT(build(mesh, resolution, Sampling::conservative).cube.counts.longest, 4000u);
+        EXPECT_GT(build(mesh, resolution, Sampling::conservative).counts.longest, 4000u);
     }
 }
 
@@ -240,7 +258,7 @@ TEST_F(CubeTest, NothingButDegenerateTrianglesIsAnEmptyCube) {
     mesh.add({0, 0, 0}, {1, 1, 1}, {0, 0, 0});
     const Built built = build(mesh, 64, Sampling::conservative);
     expect_right(mesh, built, Sampling::conservative);
-    EXPECT_EQ(built.cube.counts.fragments, 0u);
+    EXPECT_EQ(built.counts.fragments, 0u);
     EXPECT_EQ(built.tables.top[0], glm::uvec2(0, 3 | 3 << 10 | 3 << 20)) << "one box: everything";
 }
 
@@ -249,14 +267,14 @@ TEST_F(CubeTest, TwoBuildsAreTheSameByteForByte) {
         const Mesh3 mesh = soup(11, 800, vec3(1), 2.0f / 64);
         const Built first = build(mesh, 64, sampling), second = build(mesh, 64, sampling);
         EXPECT_TRUE(first.tables == second.tables);
-        EXPECT_EQ(std::memcmp(&first.cube.counts, &second.cube.counts, sizeof(LdcCounters)), 0);
+        EXPECT_EQ(std::memcmp(&first.counts, &second.counts, sizeof(LdcCounters)), 0);
     }
 }
 
 TEST_F(CubeTest, OverflowsGrowAndAreRedone) {
     // Triangles of some 12 voxels: more than any first guess of large triangles, tiles, fragments, cells and nodes.
     Random random(5);
-    Mesh3 many, deep, small;
+    Mesh3 many, deep;
     for (int i = 0; i < 7000; i++) {
         const vec3 centre = random.point(vec3(1)), reach(0.06f);
         many.add(centre + random.point(reach), centre + random.point(reach), centre + random.point(reach));
@@ -264,27 +282,127 @@ TEST_F(CubeTest, OverflowsGrowAndAreRedone) {
     // 260 triangles in each of some 1300 voxels: more long lists than guessed.
     deep.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
     for (int i = 0; i < 260; i++) deep.add({-0.5f, -0.5f, -0.5f}, {0.5f, 0.45f, -0.4f}, {-0.35f, 0.4f, 0.5f});
-    small.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
     const struct {
         const Mesh3& mesh;
         uint32_t resolution;
     } cases[] = {{many, 256}, {deep, 64}};
     for (const auto& c : cases) {
-        ComputeBuilder builder(device());
-        const Built first = build(builder, small, 16, Sampling::conservative);
-        EXPECT_EQ(builder.redone(), 0u);
-        const Built grown = build(builder, c.mesh, c.resolution, Sampling::conservative);
-        const uint32_t redone = builder.redone();
+        test::SingleCube cube = cube_of(c.mesh, c.resolution, Sampling::conservative);
+        const uint32_t redone = cube.builder.redone();
         EXPECT_GT(redone, 0u);
+        const Built grown = look_at(cube);
         expect_right(c.mesh, grown, Sampling::conservative);
-        // Now there is room: the same again in one go, and a small scene in large buffers.
-        const Built again = build(builder, c.mesh, c.resolution, Sampling::conservative);
-        EXPECT_EQ(builder.redone(), redone);
-        EXPECT_TRUE(again.tables == grown.tables);
-        EXPECT_TRUE(build(c.mesh, c.resolution, Sampling::conservative).tables == grown.tables);
-        EXPECT_TRUE(build(builder, small, 16, Sampling::conservative).tables == first.tables);
-        EXPECT_GT(builder.scratch_bytes(), uint64_t(grown.cube.counts.fragments) * 12);
+        EXPECT_GT(cube.builder.scratch_bytes(), uint64_t(grown.counts.fragments) * 12);
+        // Now there is room: the same again in one go, and triangles that take little of it.
+        const Mesh3 shrunk = shrink(c.mesh);
+        cube.build(commands());
+        EXPECT_TRUE(look_at(cube).tables == grown.tables);
+        commands().upload(cube.triangles.positions, std::span<const vec3>(shrunk.positions));
+        cube.build(commands());
+        const Built calm = look_at(cube);
+        EXPECT_LT(calm.counts.fragments, grown.counts.fragments / 4);
+        expect_right(shrunk, calm, Sampling::conservative);
+        EXPECT_TRUE(build(shrunk, c.resolution, Sampling::conservative).tables == calm.tables);
+        commands().upload(cube.triangles.positions, std::span<const vec3>(c.mesh.positions));
+        cube.build(commands());
+        EXPECT_TRUE(look_at(cube).tables == grown.tables);
+        EXPECT_EQ(cube.builder.redone(), redone);
     }
+}
+
+/// Several bodies, each in its own box, in one set of tables.
+class BodiesTest : public CubeTest {
+  protected:
+    void SetUp() override {
+        CubeTest::SetUp();
+        meshes_ = {soup(21, 60, vec3(1), 2.0f / 48), soup(22, 90, vec3(3, 0.2f, 1), 6.0f / 96), Mesh3{},
+                   soup(23, 200, vec3(0.1f), 0.2f / 128), soup(24, 40, vec3(5), 10.0f / 16)};
+        for (vec3& p : meshes_[1].positions) p += vec3(10, -4, 2);
+        meshes_[1].lower += vec3(10, -4, 2);
+        meshes_[1].upper += vec3(10, -4, 2);
+        const uint32_t resolutions[] = {48, 96, 64, 128, 16};
+        for (size_t i = 0; i < meshes_.size(); i++) {
+            const Mesh3& mesh = meshes_[i];
+            bodies_.push_back({uint32_t(all_.triangles.size()), uint32_t(mesh.triangles.size()), resolutions[i],
+                               mesh.lower, mesh.upper});
+            for (const uvec3& t : mesh.triangles) all_.triangles.push_back(t + uint32_t(all_.positions.size()));
+            all_.positions.insert(all_.positions.end(), mesh.positions.begin(), mesh.positions.end());
+        }
+    }
+    /// All bodies as they lie in the tables.
+    void expect_bodies(const Cubes& cubes, const TableSize& size, Sampling sampling) {
+        const test::Tables tables = test::download(commands(), cubes, size);
+        const std::vector<LdcBody> bodies = cubes.download_bodies(commands());
+        uint64_t samples = 0, nodes = 0, occupied = 0;
+        for (size_t i = 0; i < bodies.size(); i++) {
+            SCOPED_TRACE(testing::Message() << "body " << i);
+            const DecodedCube decoded(bodies[i], tables);
+            if (HasFatalFailure()) return;
+            if (bodies[i].triangles > 0) expect_right(meshes_[i], bodies[i], decoded, sampling);
+            samples += decoded.samples.size();
+            nodes += decoded.nodes;
+            occupied += decoded.occupied;
+        }
+        EXPECT_EQ(samples, size.samples);
+        EXPECT_EQ(nodes, size.nodes);
+        EXPECT_EQ(occupied, size.occupied);
+    }
+
+    std::vector<Mesh3> meshes_;
+    std::vector<CubeBody> bodies_;
+    Mesh3 all_;
+};
+
+TEST_F(BodiesTest, AreBuiltAtOnceAsEachAlone) {
+    const TriangleBuffers triangles(device(), all_.positions, all_.triangles);
+    for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
+        Cubes cubes(device(), bodies_, sampling);
+        ComputeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
+        builder.build(commands(), triangles);
+        expect_bodies(cubes, builder.size(), sampling);
+    }
+}
+
+TEST_F(BodiesTest, ThatStayKeepTheirTablesWhileOthersAreRebuiltAndGrow) {
+    const TriangleBuffers triangles(device(), all_.positions, all_.triangles);
+    const Sampling sampling = Sampling::conservative;
+    for (const uint32_t fixed : {1u, 2u, 3u}) {
+        SCOPED_TRACE(fixed);
+        Cubes cubes(device(), bodies_, sampling);
+        ComputeBuilder first(device(), commands(), cubes, 0, fixed);
+        first.build(commands(), triangles);
+        const test::Tables before = test::download(commands(), cubes, first.size());
+        ComputeBuilder second(device(), commands(), cubes, fixed, uint32_t(bodies_.size()) - fixed, first.size());
+        for (int i = 0; i < 2; i++) {
+            second.build(commands(), triangles);
+            expect_bodies(cubes, first.size() + second.size(), sampling);
+            EXPECT_TRUE(test::download(commands(), cubes, first.size()) == before);
+        }
+        EXPECT_GT(second.redone(), 0u) << "the tables had to grow";
+    }
+}
+
+TEST_F(BodiesTest, FollowTheirBounds) {
+    // The last body's bounds change on the device: so does its grid, and nothing else does.
+    const TriangleBuffers triangles(device(), all_.positions, all_.triangles);
+    Cubes cubes(device(), bodies_, Sampling::conservative);
+    ComputeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
+    builder.build(commands(), triangles);
+    const auto before = cubes.download_bodies(commands());
+    std::vector<CubeBody> wider = bodies_;
+    wider.back().upper *= 3.0f;
+    const Cubes other(device(), wider, Sampling::conservative);
+    commands().copy(other.body_upper, cubes.body_upper, bodies_.size() * 12);
+    builder.build(commands(), triangles);
+    const auto after = cubes.download_bodies(commands());
+    for (size_t i = 0; i < bodies_.size(); i++) {
+        const CubeGrid expected = make_grid(wider[i].lower, wider[i].upper, wider[i].resolution);
+        EXPECT_EQ(after[i].grid.dims, expected.dims) << i;
+        EXPECT_NEAR(after[i].grid.voxel / expected.voxel, 1, 1e-6) << i;
+        EXPECT_EQ(after[i].first_top, before[i].first_top) << i;
+    }
+    EXPECT_GT(after.back().grid.voxel, 1.5f * before.back().grid.voxel);
+    expect_bodies(cubes, builder.size(), Sampling::conservative);
 }
 
 TEST_F(CubeTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {
@@ -302,10 +420,10 @@ TEST_F(CubeTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {
     mesh.add(a, c, {0.3f, 0.2f, 0.1f});  // 8
     for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
         const Built built = build(mesh, 64, sampling);
-        EXPECT_EQ(built.cube.counts.degenerate, 3u);
-        EXPECT_EQ(built.cube.counts.invalid, 4u);
+        EXPECT_EQ(built.counts.degenerate, 3u);
+        EXPECT_EQ(built.counts.invalid, 4u);
         std::vector<int> seen(mesh.triangles.size());
-        for (const auto& sample : DecodedCube(built.cube, built.tables).samples) seen[sample.id >> 2]++;
+        for (const auto& sample : DecodedCube(built.body, built.tables).samples) seen[sample.id >> 2]++;
         for (size_t i = 0; i < seen.size(); i++) EXPECT_EQ(seen[i] > 0, i == 0 || i == 8) << i;
     }
 }
@@ -322,22 +440,17 @@ TEST_F(CubeTest, SoftwareDevicesRefuseListsThatRaysCannotWalk) {
     add(vec3(0));
     add(vec3(10));
     for (int i = 0; i < 16'001; i++) add(vec3(5.1f));
-    const TriangleBuffers triangles(device(), mesh.positions, mesh.triangles, vec3(0), vec3(10.1f));
-    ComputeBuilder builder(device());
-    Commands commands(device());
-    Cube cube;
-    expect_error([&] { builder.build(commands, triangles, cube, 16, Sampling::conservative); },
-                 {"16001", "--ldc", "GPU"});
+    mesh.lower = vec3(0);
+    mesh.upper = vec3(10.1f);
+    expect_error([&] { cube_of(mesh, 16, Sampling::conservative); }, {"16001", "--ldc", "GPU"});
 }
 
 TEST_F(CubeTest, BytesAreWhatTheTablesUse) {
     const Built built = build(soup(3, 200, vec3(1, 0.5f, 0.2f), 2.0f / 64), 64, Sampling::conservative);
-    const Cube::Bytes bytes = built.cube.bytes();
-    EXPECT_EQ(bytes.top, built.tables.top.size() * 8);
-    EXPECT_EQ(bytes.node, built.tables.node.size() * 4);
-    EXPECT_EQ(bytes.voxel, built.tables.voxel.size() * 4);
-    EXPECT_EQ(bytes.samples, built.tables.samples.size() * 12);
-    EXPECT_EQ(bytes.total(), bytes.top + bytes.node + bytes.voxel + bytes.samples);
+    const LdcCounters& c = built.counts;
+    EXPECT_EQ((TableSize{c.tops, c.occupied, c.nodes, c.fragments}.bytes()),
+              built.tables.top.size() * 8 + built.tables.node.size() * 4 + built.tables.voxel.size() * 4 +
+                  built.tables.samples.size() * 12);
 }
 
 TEST(MakeGrid, HoldsTheBoxWithAVoxelAround) {

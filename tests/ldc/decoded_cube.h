@@ -15,16 +15,16 @@ struct Tables {
     bool operator==(const Tables&) const = default;
 };
 
-inline Tables download(Commands& commands, const Cube& cube) {
-    const glm::uvec3 tops = cube.grid.dims / 16u;
-    return {commands.download<glm::uvec2>(cube.top_table, uint64_t(tops.x) * tops.y * tops.z),
-            commands.download<glm::uvec2>(cube.samples, cube.counts.fragments),
-            commands.download<uint32_t>(cube.node_table, uint64_t(cube.counts.tops) * 64),
-            commands.download<uint32_t>(cube.voxel_table, uint64_t(cube.counts.nodes) * 64),
-            commands.download<uint32_t>(cube.sample_ids, cube.counts.fragments)};
+/// All that builds of `size` in all left in the tables.
+inline Tables download(Commands& commands, const Cubes& cubes, const TableSize& size) {
+    return {commands.download<glm::uvec2>(cubes.top_table, size.tops),
+            commands.download<glm::uvec2>(cubes.samples, size.samples),
+            commands.download<uint32_t>(cubes.node_table, size.occupied * 64),
+            commands.download<uint32_t>(cubes.voxel_table, size.nodes * 64),
+            commands.download<uint32_t>(cubes.sample_ids, size.samples)};
 }
 
-/// Walks all tables; every fault becomes a test failure.
+/// Walks the tables of one body; every fault becomes a test failure.
 class DecodedCube {
   public:
     struct Sample {
@@ -34,32 +34,42 @@ class DecodedCube {
     };
     std::vector<Sample> samples;
     std::vector<uint64_t> pairs;  ///< sorted
+    uint32_t occupied = 0, nodes = 0, voxels = 0, longest = 0;
 
-    DecodedCube(const Cube& cube, const Tables& tables)
-        : cube_(cube), tables_(tables), used_(tables.ids.size()), tops_(cube.grid.dims / 16u) {
+    DecodedCube(const LdcBody& body, const Tables& tables)
+        : body_(body),
+          tables_(tables),
+          used_(tables.ids.size()),
+          top_seen_(tables.node.size() / 64),
+          tops_(body.grid.dims / 16u) {
         decode();
+    }
+
+    /// The body is all that there is in the tables.
+    void expect_whole(const LdcCounters& counts) const {
+        EXPECT_EQ(occupied, counts.occupied);
+        EXPECT_EQ(nodes, counts.nodes);
+        EXPECT_EQ(voxels, counts.voxels);
+        EXPECT_EQ(longest, counts.longest);
+        EXPECT_EQ(samples.size(), counts.fragments) << "every fragment is in one list";
     }
 
   private:
     void decode() {
-        std::vector<bool> top_seen(cube_.counts.tops);
-        for (uint32_t i = 0; i < tables_.top.size(); i++) {
+        for (uint32_t i = 0; i < tops_.x * tops_.y * tops_.z; i++) {
             const glm::uvec3 cell(i % tops_.x, i / tops_.x % tops_.y, i / (tops_.x * tops_.y));
-            const glm::uvec2 entry = tables_.top[i];
+            ASSERT_LT(body_.first_top + i, tables_.top.size());
+            const glm::uvec2 entry = tables_.top[body_.first_top + i];
             if (!(entry.x >> 31)) {
                 check_top_box(cell, entry);
                 continue;
             }
-            ASSERT_LT(entry.y, top_seen.size());
-            ASSERT_FALSE(top_seen[entry.y]) << "two cells of one number";
-            top_seen[entry.y] = true;
+            ASSERT_LT(entry.y, top_seen_.size());
+            ASSERT_FALSE(top_seen_[entry.y]) << "two cells of one number";
+            top_seen_[entry.y] = true;
+            occupied++;
             decode_nodes(cell * 16u, entry.y);
         }
-        EXPECT_EQ(std::count(top_seen.begin(), top_seen.end(), true), ptrdiff_t(cube_.counts.tops));
-        EXPECT_EQ(nodes_, cube_.counts.nodes);
-        EXPECT_EQ(voxels_, cube_.counts.voxels);
-        EXPECT_EQ(longest_, cube_.counts.longest);
-        EXPECT_EQ(samples.size(), cube_.counts.fragments) << "every fragment is in one list";
         std::sort(pairs.begin(), pairs.end());
         EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
     }
@@ -71,7 +81,7 @@ class DecodedCube {
         for (uint32_t z = lo.z; z <= hi.z; z++)
             for (uint32_t y = lo.y; y <= hi.y; y++)
                 for (uint32_t x = lo.x; x <= hi.x; x++)
-                    ASSERT_FALSE(tables_.top[(z * tops_.y + y) * tops_.x + x].x >> 31)
+                    ASSERT_FALSE(tables_.top[body_.first_top + (z * tops_.y + y) * tops_.x + x].x >> 31)
                         << "an occupied cell in an empty cell's box";
     }
     /// An empty entry's box among the 64 entries from `first` of `table`.
@@ -87,33 +97,33 @@ class DecodedCube {
                     ASSERT_FALSE(table[first + z * 16 + y * 4 + x] >> 31) << "an occupied cell in an empty one's box";
     }
     void decode_nodes(const glm::uvec3& corner, uint32_t number) {
-        bool occupied = false;
+        bool any = false;
         for (uint32_t k = 0; k < 64; k++) {
             const uint32_t entry = tables_.node[number * 64 + k];
             if (!(entry >> 31)) {
                 check_box(tables_.node, number * 64, k);
                 continue;
             }
-            occupied = true;
-            nodes_++;
-            ASSERT_LT(entry & 0x7fffffff, cube_.counts.nodes);
+            any = true;
+            nodes++;
+            ASSERT_LT(entry & 0x7fffffff, tables_.voxel.size() / 64);
             decode_voxels(corner + glm::uvec3(k % 4, k / 4 % 4, k / 16) * 4u, entry & 0x7fffffff);
         }
-        ASSERT_TRUE(occupied) << "an occupied cell without a node";
+        ASSERT_TRUE(any) << "an occupied cell without a node";
     }
     void decode_voxels(const glm::uvec3& corner, uint32_t number) {
-        bool occupied = false;
+        bool any = false;
         for (uint32_t k = 0; k < 64; k++) {
             const uint32_t entry = tables_.voxel[size_t(number) * 64 + k];
             if (!(entry >> 31)) {
                 check_box(tables_.voxel, size_t(number) * 64, k);
                 continue;
             }
-            occupied = true;
-            voxels_++;
+            any = true;
+            voxels++;
             decode_list(corner + glm::uvec3(k % 4, k / 4 % 4, k / 16), entry & 0x7fffffff);
         }
-        ASSERT_TRUE(occupied) << "an occupied node without a voxel";
+        ASSERT_TRUE(any) << "an occupied node without a voxel";
     }
     void decode_list(const glm::uvec3& voxel, uint32_t first) {
         for (uint32_t j = first;; j++) {
@@ -123,19 +133,18 @@ class DecodedCube {
             const uint32_t id = tables_.ids[j];
             ASSERT_TRUE(j == first || tables_.ids[j - 1] < id) << "not sorted by id";
             samples.push_back({voxel, id, tables_.samples[j]});
-            pairs.push_back(pair_of(cube_.grid, voxel, id));
+            pairs.push_back(pair_of(body_.grid, voxel, id));
             if (tables_.samples[j].y >> 30 & 1) {
-                longest_ = std::max(longest_, j - first + 1);
+                longest = std::max(longest, j - first + 1);
                 return;
             }
         }
     }
 
-    const Cube& cube_;
+    const LdcBody body_;
     const Tables& tables_;
-    std::vector<bool> used_;
+    std::vector<bool> used_, top_seen_;
     glm::uvec3 tops_;
-    uint32_t nodes_ = 0, voxels_ = 0, longest_ = 0;
 };
 
 }  // namespace peelray::test

@@ -8,10 +8,9 @@
 #include <thread>
 
 #include "../gpu/device_fixture.h"
-#include "ldc/compute_builder.h"
-#include "ldc/tracer.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
+#include "single_cube.h"
 
 namespace peelray {
 namespace {
@@ -20,17 +19,15 @@ using test::oracle_ray;
 using test::RayKind;
 const float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A scene with its cube on the device, ready to trace.
-class TracedScene {
+/// A body with its cube on the device, ready to trace.
+class TracedBody {
   public:
-    TracedScene(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test)
+    TracedBody(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test)
         : device_(device),
           commands_(device),
-          builder_(device),
-          triangles_(device, geometry.positions, geometry.triangles, geometry.lower, geometry.upper),
-          test_(test) {
-        builder_.build(commands_, triangles_, cube_, resolution, sampling_for(test));
-    }
+          cube_(device, commands_, geometry.positions, geometry.triangles, geometry.lower, geometry.upper, resolution,
+                sampling_for(test)),
+          test_(test) {}
 
     std::vector<Hit> trace(const std::vector<Ray>& rays, bool any_hit = false, const std::vector<uint32_t>& skip = {}) {
         Buffer ray_buffer(device_, "rays", rays.size() * sizeof(Ray)),
@@ -38,23 +35,23 @@ class TracedScene {
         commands_.upload(ray_buffer, std::span<const Ray>(rays));
         Buffer skip_buffer;
         if (!skip.empty()) {
-            skip_buffer = Buffer(device_, "skip", skip.size() * 4);
-            commands_.upload(skip_buffer, std::span<const uint32_t>(skip));
+            std::vector<SurfaceId> own;
+            for (uint32_t triangle : skip) own.push_back({0, triangle});
+            skip_buffer = Buffer(device_, "skip", own.size() * sizeof(SurfaceId));
+            commands_.upload(skip_buffer, std::span<const SurfaceId>(own));
         }
-        record_trace(commands_, device_, cube_, triangles_,
+        record_trace(commands_, device_, cube_.traced(),
                      {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hit_buffer, test_,
                      any_hit);
         commands_.submit();
         return commands_.download<Hit>(hit_buffer, rays.size());
     }
-    const Cube& cube() const { return cube_; }
+    const CubeGrid& grid() const { return cube_.grid; }
 
   private:
     Device& device_;
     Commands commands_;
-    ComputeBuilder builder_;
-    TriangleBuffers triangles_;
-    Cube cube_;
+    test::SingleCube cube_;
     HitTest test_;
 };
 
@@ -75,7 +72,7 @@ class TraceTest : public DeviceTest {
   protected:
     /// Every ray of all kinds must have a right answer; reports the first wrong ray of each kind in full.
     void compare(const Geometry& geometry, uint32_t resolution, size_t rays_per_kind) {
-        TracedScene scene(device(), geometry, resolution, HitTest::exact);
+        TracedBody scene(device(), geometry, resolution, HitTest::exact);
         const Oracle oracle(geometry);
         for (RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel, RayKind::on_surface}) {
             test::RaySource source(geometry, 1234 + resolution);
@@ -179,7 +176,7 @@ Geometry box_geometry() {
 }
 
 TEST_F(TraceTest, OddRaysHaveDefinedAnswers) {
-    TracedScene scene(device(), box_geometry(), 64, HitTest::exact);
+    TracedBody scene(device(), box_geometry(), 64, HitTest::exact);
     const float nan = std::nanf(""), tiny = 1e-30f, denormal = 1e-41f;
     struct Case {
         Ray ray;
@@ -241,7 +238,7 @@ TEST_F(TraceTest, TheLongestListThatASoftwareDeviceTakesIsTracedToItsEnd) {
     g.upper = glm::vec3(10);
     for (int i = 0; i < 15'998; i++) add(glm::vec3(5.1f));
     add(glm::vec3(5.3f, 5.1f, 5.1f));
-    TracedScene scene(device(), g, 16, HitTest::exact);
+    TracedBody scene(device(), g, 16, HitTest::exact);
     const std::vector<Ray> rays = {{{5.12f, 5.12f, 0}, 0, {0, 0, 1}, kInfinity},
                                    {{5.32f, 5.12f, 0}, 0, {0, 0, 1}, kInfinity}};
     const auto hits = scene.trace(rays);
@@ -251,7 +248,7 @@ TEST_F(TraceTest, TheLongestListThatASoftwareDeviceTakesIsTracedToItsEnd) {
 }
 
 TEST_F(TraceTest, SkippedTriangleDoesNotCount) {
-    TracedScene scene(device(), box_geometry(), 32, HitTest::exact);
+    TracedBody scene(device(), box_geometry(), 32, HitTest::exact);
     const std::vector<Ray> rays(2, Ray{{0.3f, -0.2f, -5}, 0, {0, 0, 1}, kInfinity});
     const auto first = scene.trace(rays);
     ASSERT_NE(first[0].triangle, ~0u);
@@ -262,7 +259,7 @@ TEST_F(TraceTest, SkippedTriangleDoesNotCount) {
 
 TEST_F(TraceTest, BarycentricWeightsGiveTheHitPoint) {
     const Geometry geometry = flatten(load_scene("builtin:blob:5000"));
-    TracedScene scene(device(), geometry, 128, HitTest::exact);
+    TracedBody scene(device(), geometry, 128, HitTest::exact);
     test::RaySource source(geometry, 5);
     std::vector<Ray> rays(20'000);
     for (Ray& ray : rays) ray = source.make(RayKind::uniform);
@@ -279,7 +276,7 @@ TEST_F(TraceTest, BarycentricWeightsGiveTheHitPoint) {
 TEST_F(TraceTest, PlanarHitsAreOffByLessThanAVoxel) {
     // Allowed are 0.3 % of hits off by more than one voxel at 1024; rays start off the surface.
     const Geometry geometry = flatten(load_scene("builtin:blob:300000"));
-    TracedScene scene(device(), geometry, 1024, HitTest::planar);
+    TracedBody scene(device(), geometry, 1024, HitTest::planar);
     const Oracle oracle(geometry);
     test::RaySource source(geometry, 9);
     std::vector<Ray> rays(200'000);
@@ -300,7 +297,7 @@ TEST_F(TraceTest, PlanarHitsAreOffByLessThanAVoxel) {
                 glm::cross(glm::dvec3(geometry.positions[t.y]) - a, glm::dvec3(geometry.positions[t.z]) - a);
             cosine = std::abs(glm::dot(glm::normalize(n), glm::normalize(glm::dvec3(rays[i].direction))));
         }
-        if (!same && !(error * cosine <= scene.cube().grid.voxel)) off++;
+        if (!same && !(error * cosine <= scene.grid().voxel)) off++;
     });
     fmt::print("  planar 1024: {} of {} off by more than a voxel\n", off.load(), hit.load());
     EXPECT_LE(double(off), 0.003 * double(hit));

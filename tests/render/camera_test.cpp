@@ -141,6 +141,19 @@ TEST_F(CameraTest, InsideAClosedRoomEveryPixelHits) {
     }
 }
 
+TEST_F(CameraTest, TheBoundsDecideHowFarAViewReaches) {
+    // A wall fifty metres behind a small square: in sight, unless the scene is said to be no larger than the square.
+    Stage stage;
+    stage.add(parallelogram({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}), unlit({1, 0, 0}));
+    stage.add(parallelogram({-5, -5, -50}, {10, 0, 0}, {0, 10, 0}), unlit({0, 1, 0}));
+    RenderSettings settings = settings_for(orthographic({0, 0, 3}, {0, 0, 0}, 4), 16);
+    EXPECT_EQ(render(stage, white, settings).radiance.front(), glm::vec4(0, 1, 0, 1));
+    settings.bounds = Box{{-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}};
+    const RenderResult result = render(stage, white, settings);
+    EXPECT_EQ(result.radiance.front(), glm::vec4(1, 1, 1, 0));
+    EXPECT_EQ(result.radiance[8 * 16 + 8], glm::vec4(1, 0, 0, 1));
+}
+
 TEST_F(CameraTest, NothingInViewIsTheEnvironment) {
     const Camera camera = perspective({0, 5, 20}, {0, 5, 40}, 60);
     const RenderResult picture =
@@ -198,9 +211,8 @@ TEST_F(CameraTest, TheSamePictureTwice) {
     settings.ambient = true;
     const Stage stage = everything();
     const Environment sky = sky_environment(default_sun_direction());
-    const Geometry geometry = flatten(stage.scene);
-    Renderer renderer(device(), stage.scene, geometry, sky);
-    const RenderResult first = renderer.render(settings), again = renderer.render(settings),
+    const auto renderer = renderer_for(stage, sky);
+    const RenderResult first = renderer->render(settings), again = renderer->render(settings),
                        fresh = render(stage, sky, settings);
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);

@@ -215,14 +215,13 @@ TEST_F(CubemapTracerTest, TheSamePictureTwice) {
     settings.spp = 2;
     settings.bounces = 1;
     const Stage stage = still_life();
-    const Geometry geometry = flatten(stage.scene);
     const Environment sky = sky_environment(default_sun_direction());
-    Renderer renderer(device(), stage.scene, geometry, sky);
-    const RenderResult first = renderer.render(settings);
+    const auto renderer = renderer_for(stage, sky);
+    const RenderResult first = renderer->render(settings);
     settings.tracer = Tracer::ldc;
-    renderer.render(settings);
+    renderer->render(settings);
     settings.tracer = Tracer::cubemap;
-    const RenderResult again = renderer.render(settings), fresh = render(stage, sky, settings);
+    const RenderResult again = renderer->render(settings), fresh = render(stage, sky, settings);
     EXPECT_EQ(tally(first, again, 0).wrong, 0u);
     EXPECT_EQ(tally(first, fresh, 0).wrong, 0u);
     EXPECT_EQ(first.encoded, again.encoded);

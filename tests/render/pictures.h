@@ -20,9 +20,12 @@ inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
 class PictureTest : public DeviceTest {
   protected:
     RenderResult render(const Stage& stage, const Environment& environment, const RenderSettings& settings) {
-        const Geometry geometry = flatten(stage.scene);
-        Renderer renderer(device(), stage.scene, geometry, environment);
-        return renderer.render(settings);
+        return renderer_for(stage, environment)->render(settings);
+    }
+    /// For several pictures of a scene that stands still; the stage must outlive it.
+    std::unique_ptr<Renderer> renderer_for(const Stage& stage, const Environment& environment) {
+        return std::make_unique<Renderer>(device(), stage.scene, assemble(stage.scene, motion_of(stage.scene, "")),
+                                          environment);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };

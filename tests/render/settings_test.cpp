@@ -91,15 +91,14 @@ TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {
     refuses([](auto& s) { s.camera = perspective({0, 1, 5}, {0, 0, 0}, 0); }, {"--fov"});
 
     // The renderer is still of use after an error; and the largest legal values work.
-    const Geometry geometry = flatten(stage.scene);
-    Renderer renderer(device(), stage.scene, geometry, black);
+    const auto renderer = renderer_for(stage, black);
     RenderSettings settings = good;
     settings.bounces = 17;
-    expect_error([&] { renderer.render(settings); }, {"--bounces"});
+    expect_error([&] { renderer->render(settings); }, {"--bounces"});
     settings.bounces = 16;
-    EXPECT_EQ(renderer.render(settings).radiance.size(), 64u);
+    EXPECT_EQ(renderer->render(settings).radiance.size(), 64u);
     settings.width = 5, settings.height = 3;  // another size afterwards
-    EXPECT_TRUE(near(radiance_at(renderer.render(settings), 2, 1), {1, 1, 1}, 1e-6));
+    EXPECT_TRUE(near(radiance_at(renderer->render(settings), 2, 1), {1, 1, 1}, 1e-6));
 }
 
 TEST_F(SettingsTest, AutoChoosesByTriangles) {

@@ -129,21 +129,24 @@ TEST(Skin, BendsAStrip) {
     }
 }
 
-TEST(Skin, MostVerticesTellWhetherItIsInsideOut) {
-    // The first vertices hang on a joint that is scaled to nothing, the others on one that mirrors.
-    Scene scene = strip();
-    scene.nodes[2].parent = -1;
-    scene.nodes[1].local = Placement{{0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0}}.matrix();
-    scene.nodes[2].local = Placement{{0, 1, 0}, {1, 0, 0, 0}, {-1, 1, 1}}.matrix();
-    const Geometry g = flatten(scene);
-    size_t looked_at = 0;
-    for (const glm::uvec3& t : g.triangles) {
-        const glm::vec3 face = glm::cross(g.positions[t.y] - g.positions[t.x], g.positions[t.z] - g.positions[t.x]);
-        if (glm::length(face) == 0) continue;
-        ++looked_at;
-        EXPECT_GT(glm::dot(face, g.normals[t.x] + g.normals[t.y] + g.normals[t.z]), 0);
+TEST(Animate, CarriesACameraWithoutDrift) {
+    Scene scene = strip(), fresh = strip();
+    for (Scene* each : {&scene, &fresh}) {
+        Camera camera;
+        camera.eye = {0, 1, 0};
+        camera.look = {0, 1, -3.3333333f};
+        each->cameras.push_back(camera);
+        each->nodes[2].camera = 0;
     }
-    EXPECT_GE(looked_at, 4u);
+    for (int i = 0; i < 200; i++) animate(scene, "all", 0.013 * i);
+    animate(scene, "all", 0.7);
+    animate(fresh, "all", 0.7);
+    EXPECT_EQ(scene.cameras[0].look, fresh.cameras[0].look);
+    EXPECT_EQ(scene.cameras[0].eye, fresh.cameras[0].eye);
+    EXPECT_NEAR(glm::length(scene.cameras[0].look - scene.cameras[0].eye), 3.3333333f, 1e-5f);
+    stand_at_rest(scene);
+    EXPECT_LT(glm::length(scene.cameras[0].look - glm::vec3(0, 1, -3.3333333f)), 1e-5f);
+    EXPECT_EQ(flatten(scene).positions, flatten(strip()).positions);
 }
 
 TEST(Animate, ForgetsWhatWasBefore) {

@@ -30,11 +30,15 @@ TEST(Encoding, Pixels) {
 
 TEST(Reflective, ByMaterial) {
     Scene scene;
-    Geometry geometry;
-    geometry.materials = {0};
     scene.materials.resize(2);
-    scene.materials[1].transmission = 1;  // no triangle has it
-    const auto reflective = [&](uint32_t spp) { return is_reflective(scene, geometry, spp); };
+    scene.materials[1].transmission = 1;  // no shown triangle has it
+    Primitive shown, hidden;
+    shown.triangles = hidden.triangles = {{0, 1, 2}};
+    hidden.material = 1;
+    scene.meshes = {{"shown", {shown}, {}}, {"hidden", {hidden}, {}}};
+    scene.nodes.resize(2);
+    scene.nodes[0].mesh = 0;
+    const auto reflective = [&](uint32_t spp) { return is_reflective(scene, spp); };
     EXPECT_FALSE(reflective(1));
     scene.materials[0].roughness = 0.4f;
     EXPECT_TRUE(reflective(1));

@@ -1,4 +1,5 @@
-// A scene file never reads outside of its own folder.
+// A scene file never reads outside of its own folder, and what was read is known.
+#include <set>
 
 #include "scene_files.h"
 
@@ -27,6 +28,36 @@ TEST_F(UriTest, InsideIsRead) {
     for (const char* uri :
          {"near.bin", "./near.bin", "deep/far.bin", "deep/../near.bin", "%6Eear.bin", "../inside/near.bin"})
         EXPECT_NO_THROW(load_scene(scene(uri))) << uri;
+}
+
+TEST_F(UriTest, TellsWhichFilesItRead) {
+    json gltf = square();
+    gltf["buffers"][0]["uri"] = "near.bin";
+    gltf["buffers"].push_back({{"byteLength", 4}, {"uri", "deep/far.bin"}});
+    gltf["images"] = {{{"uri", "deep/a.png"}}, {{"uri", "deep/unused.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    primitive(gltf)["material"] = 0;
+    folder_.write("inside/deep/a.png", tiny_png());
+    folder_.write("inside/deep/unused.png", tiny_png());
+    const std::string file = folder_.write("inside/scene.gltf", gltf.dump());
+    const auto names = [](const std::string& scene) {
+        std::vector<std::string> names;
+        for (const std::filesystem::path& path : load_scene(scene).files) names.push_back(path.filename());
+        return names;
+    };
+    const std::vector<std::string> read = names(file);
+    ASSERT_FALSE(read.empty());
+    EXPECT_EQ(read[0], "scene.gltf");
+    EXPECT_EQ(std::set<std::string>(read.begin(), read.end()),
+              (std::set<std::string>{"scene.gltf", "near.bin", "far.bin", "a.png"}));
+    EXPECT_EQ(read.size(), 4u);
+
+    folder_.write("inside/m.mtl", "newmtl x\nmap_Kd deep/a.png\n");
+    const std::string obj =
+        folder_.write("inside/a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+    EXPECT_EQ(names(obj), (std::vector<std::string>{"a.obj", "m.mtl", "a.png"}));
+    EXPECT_TRUE(load_scene("builtin:blob:8").files.empty());
 }
 
 TEST_F(UriTest, EscapesAreRefused) {

@@ -1,0 +1,49 @@
+// The grid of every body of a build, from its bounds, and where its parts of the tables begin. One workgroup.
+#version 460
+#include "common.glsl"
+#include "params.h"
+#include "bounds.glsl"
+#include "ldc_grid.h"
+layout(local_size_x = 64) in;
+PARAMS(LdcParams)
+BUFFER(readonly, 0, uvec3, body_lower)
+BUFFER(readonly, 1, uvec3, body_upper)
+BUFFER(, 2, LdcBody, bodies)
+BUFFER(, 3, LdcCounters, counters)
+
+shared uvec4 partial[64];
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex;
+    uvec4 carry = uvec4(0);  // lines along x, y, z; cells
+    for (uint base = 0u; base < params.bodies; base += 64u) {
+        const uint body = params.first_body + base + lane;
+        const bool valid = base + lane < params.bodies;
+        uvec4 own = uvec4(0);
+        if (valid) {
+            const CubeGrid grid = ldcMakeGrid(orderedFloats(body_lower[body]), orderedFloats(body_upper[body]), bodies[body].resolution);
+            const uvec3 tops = grid.dims >> 4u;
+            own = uvec4(tops.y * tops.z, tops.z * tops.x, tops.x * tops.y, tops.x * tops.y * tops.z);
+            bodies[body].grid = grid;
+        }
+        partial[lane] = own;
+        barrier();
+        for (uint step = 1u; step < 64u; step <<= 1u) {
+            const uvec4 other = lane >= step ? partial[lane - step] : uvec4(0);
+            barrier();
+            partial[lane] += other;
+            barrier();
+        }
+        if (valid) {
+            const uvec4 before = carry + partial[lane] - own;
+            bodies[body].first_line = before.xyz;
+            bodies[body].first_top = params.first_top + before.w;
+        }
+        carry += partial[63];
+        barrier();
+    }
+    if (lane == 0u) {
+        counters[0].lines = carry.xyz;
+        counters[0].tops = carry.w;
+    }
+}

@@ -1,0 +1,67 @@
+#include "cli/picture_files.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "image/image.h"
+
+namespace peelray {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+enum class Format { png, exr, hdr };
+
+Format format_of(const fs::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".png") return Format::png;
+    if (extension == ".exr") return Format::exr;
+    if (extension == ".hdr") return Format::hdr;
+    fail("cannot tell the picture's format from '{}': name it .png, .exr or .hdr", path.string());
+}
+
+void write_aovs(const Picture& result, const std::vector<std::string>& names, const fs::path& output) {
+    const Aovs& a = result.aovs;
+    const auto component = [](const std::vector<glm::vec4>& values, int i) {
+        std::vector<float> channel;
+        for (const glm::vec4& value : values) channel.push_back(value[i]);
+        return channel;
+    };
+    for (const std::string& name : names) {
+        const fs::path path = aov_path(output, name);
+        const auto write = [&](const std::vector<std::string>& channels,
+                               const std::vector<std::vector<float>>& values) {
+            write_exr_channels(path, result.width, result.height, channels, values);
+        };
+        if (name == "depth") write({"Z"}, {a.depth});
+        if (name == "triangle") write({"triangle"}, {a.triangle});
+        if (name == "material") write({"material"}, {a.material});
+        if (name == "normal")
+            write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
+        if (name == "albedo")
+            write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
+        if (name == "position")
+            write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
+    }
+}
+
+}  // namespace
+
+void check_picture_name(const fs::path& path) {
+    format_of(path);
+}
+
+fs::path aov_path(const fs::path& output, const std::string& name) {
+    fs::path path = output;
+    return path.replace_extension(name + ".exr");
+}
+
+void write_picture(const Picture& picture, const std::vector<std::string>& aovs, const fs::path& path) {
+    write_aovs(picture, aovs, path);
+    if (format_of(path) == Format::png)
+        write_png(path, Image8{picture.width, picture.height, picture.encoded});
+    else
+        write_hdr(path, Image{picture.width, picture.height, picture.radiance});
+}
+
+}  // namespace peelray

@@ -1,0 +1,21 @@
+// The files that pictures go into.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// Throws Error unless the name says .png, .exr or .hdr.
+void check_picture_name(const std::filesystem::path& path);
+
+/// NAME.KIND.exr beside NAME.png.
+std::filesystem::path aov_path(const std::filesystem::path& output, const std::string& kind);
+
+/// The picture and, beforehand, the auxiliary ones: where a picture is, all of it is.
+void write_picture(const Picture& picture, const std::vector<std::string>& aovs, const std::filesystem::path& path);
+
+}  // namespace peelray

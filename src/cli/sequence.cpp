@@ -1,0 +1,75 @@
+#include "cli/sequence.h"
+
+#include "base/error.h"
+#include "cli/frame_pattern.h"
+#include "cli/video.h"
+
+namespace peelray {
+namespace {
+
+constexpr uint32_t kMostFrames = 10'000'000;
+
+FrameRange choose_frames(const SequenceArguments& s) {
+    if (s.turntable && (*s.turntable < 1 || *s.turntable > kMostFrames))
+        fail("a turntable of {} frames is out of range: choose 1 to {} (--turntable)", *s.turntable, kMostFrames);
+    const FrameRange frames = s.frames.value_or(FrameRange{0, s.turntable.value_or(0)});
+    if (frames.first >= frames.end)
+        fail("--frames {}:{} holds no frame: A:B are the frames from A up to B - 1", frames.first, frames.end);
+    if (s.turntable && frames.end > *s.turntable)
+        fail("--frames {}:{} reaches beyond the {} frames of the turntable: choose from 0:{}", frames.first, frames.end,
+             *s.turntable, *s.turntable);
+    if (frames.end - frames.first > kMostFrames)
+        fail("{} frames are too many: choose up to {} (--frames)", frames.end - frames.first, kMostFrames);
+    return frames;
+}
+
+}  // namespace
+
+std::vector<uint32_t> Sequence::numbers() const {
+    std::vector<uint32_t> numbers;
+    for (uint64_t k = uint64_t(frames.first) + shard.index; k < frames.end; k += shard.count)
+        numbers.push_back(uint32_t(k));
+    return numbers;
+}
+
+Moment Sequence::moment(uint32_t frame) const {
+    Moment moment;
+    if (runs) moment.time = frame / fps;
+    if (turntable > 0) moment.turn = double(frame) / turntable;
+    return moment;
+}
+
+Sequence plan_sequence(const RenderArguments& a) {
+    const SequenceArguments& s = a.sequence;
+    Sequence sequence;
+    sequence.frames = choose_frames(s);
+    sequence.turntable = s.turntable.value_or(0);
+    sequence.fps = s.fps.value_or(30);
+    sequence.shard = s.shard.value_or(Shard{});
+    if (!s.turntable && a.time)
+        fail("--frames show many moments and --time one: leave one of them out (a --turntable can stand at --time)");
+    sequence.runs = !a.time && (!s.turntable || s.fps || !a.animation.empty());
+    if (!(sequence.fps >= 0.001 && sequence.fps <= 1000))
+        fail("{} frames per second are out of range: choose 0.001 to 1000 (--fps)", sequence.fps);
+    if (sequence.runs && (sequence.frames.end - 1) / sequence.fps > 1e6)
+        fail("frame {} at {} frames per second is beyond 1000000 seconds: choose other --frames or --fps",
+             sequence.frames.end - 1, sequence.fps);
+    if (sequence.shard.index >= sequence.shard.count)
+        fail("there is no shard {}/{}: the shards of n are 0/n to n-1/n (--shard)", sequence.shard.index,
+             sequence.shard.count);
+    if (a.repeat > 1) fail("--repeat measures one picture: leave it out for several frames");
+    return sequence;
+}
+
+void check_single(const RenderArguments& a) {
+    const SequenceArguments& s = a.sequence;
+    if (is_video(a.output))
+        fail("'{}' is a video: say which frames with --frames A:B or --turntable N", a.output.string());
+    if (has_frame_number(a.output))
+        fail("'{}' has a place for a frame's number: say which frames with --frames A:B or --turntable N",
+             a.output.string());
+    const char* option = s.fps ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
+    if (option) fail("{} is for several frames: add --frames A:B or --turntable N", option);
+}
+
+}  // namespace peelray

@@ -1,0 +1,26 @@
+// Several pictures in a row: which frames there are and what each shows.
+#pragma once
+
+#include "cli/picture_maker.h"
+
+namespace peelray {
+
+struct Sequence {
+    FrameRange frames;
+    Shard shard;
+    double fps = 30;
+    bool runs = false;       ///< the animation does: frame k shows the moment k/fps
+    uint32_t turntable = 0;  ///< frames of the camera's full circle; 0: it stays
+
+    /// Those of the shard, in order.
+    std::vector<uint32_t> numbers() const;
+    Moment moment(uint32_t frame) const;
+};
+
+/// What the options ask for. Throws Error where they contradict each other or are out of range.
+Sequence plan_sequence(const RenderArguments& arguments);
+
+/// Throws Error where an option of sequences has no effect on a single picture.
+void check_single(const RenderArguments& arguments);
+
+}  // namespace peelray

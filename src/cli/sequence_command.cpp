@@ -1,0 +1,278 @@
+// `peelray render` of several frames: pictures by a pattern, or a video.
+#include <chrono>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "cli/frame_pattern.h"
+#include "cli/manifest.h"
+#include "cli/picture_files.h"
+#include "cli/stats.h"
+#include "cli/video.h"
+#include "image/image.h"
+
+namespace peelray {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The arguments of the frame that comes first: what is said of --time holds for it as for a single picture.
+RenderArguments at_first_frame(const RenderArguments& a, const Sequence& sequence) {
+    RenderArguments first = a;
+    if (sequence.runs) first.time = sequence.moment(sequence.numbers().front()).time;
+    return first;
+}
+
+/// Everything that the frames of a run share.
+class Run {
+  public:
+    Run(const RenderArguments& a, const Sequence& sequence)
+        : sequence_(sequence),
+          arguments_(at_first_frame(a, sequence)),
+          scene_(prepare_scene(arguments_)),
+          maker_(scene_, arguments_) {}
+
+    const PreparedScene& scene() const { return scene_; }
+    std::string renderer_name() { return maker_.renderer_name(arguments_.tracing.tracer); }
+    size_t done() const { return done_; }
+
+    using Write = std::function<void(uint32_t frame, const MadePicture& picture)>;
+    /// Renders frames and hands each to `write`. Throws Interrupted between any two steps.
+    void render(const std::vector<uint32_t>& frames, const Write& write);
+
+    /// The stats file. `left_alone`: frames that were there already.
+    Json stats(size_t left_alone) const;
+    /// What to print in the end, without what was written.
+    std::string summary(size_t left_alone) const;
+
+  private:
+    MadePicture make(uint32_t frame, const std::function<void(double)>& progress);
+    void count(uint32_t frame, MadePicture& made);
+
+    const Sequence& sequence_;
+    Clock::time_point start_ = Clock::now();
+    RenderArguments arguments_;
+    PreparedScene scene_;
+    PictureMaker maker_;
+    size_t done_ = 0;
+    std::string device_;  ///< that rendered so far
+    RayCounts rays_;
+    double frame_ms_ = 0, build_ms_ = 0;
+    Json frames_ = Json::array();
+};
+
+MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
+    RenderSettings settings = settings_of(arguments_);
+    settings.aovs = !arguments_.aovs.empty();
+    try {
+        return maker_.make(arguments_.tracing.tracer, settings, sequence_.moment(frame), progress);
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const Error& error) {
+        fail("frame {}: {}", frame, error.what());
+    }
+}
+
+void Run::count(uint32_t frame, MadePicture& made) {
+    done_++;
+    device_ = made.device;
+    const RayCounts& rays = made.picture.rays;
+    rays_.primary += rays.primary;
+    rays_.reflection += rays.reflection;
+    rays_.refraction += rays.refraction;
+    rays_.shadow += rays.shadow;
+    rays_.ambient += rays.ambient;
+    frame_ms_ += made.stats["frame_ms"].get<double>();
+    build_ms_ += made.stats["build_ms"].get<double>();
+    if (arguments_.stats.empty()) return;
+    const Moment moment = sequence_.moment(frame);
+    const std::optional<double> time = moment.time ? moment.time : scene_.time;
+    Json entry = {{"frame", frame}, {"time", time ? Json(*time) : Json(nullptr)}};
+    if (sequence_.turntable > 0) entry["turn_degrees"] = moment.turn * 360;
+    entry.update(made.stats);
+    frames_.push_back(std::move(entry));
+}
+
+void Run::render(const std::vector<uint32_t>& frames, const Write& write) {
+    Progress bar("rendering", double(frames.size()), "frames");
+    for (size_t i = 0; i < frames.size(); i++) {
+        check_interrupt();
+        MadePicture made = make(frames[i], [&](double share) { bar.update(double(i) + share); });
+        write(frames[i], made);
+        count(frames[i], made);
+        bar.update(double(i + 1));
+    }
+}
+
+Json Run::stats(size_t left_alone) const {
+    const double seconds = seconds_since(start_);
+    return {{"frames", frames_},
+            {"totals",
+             {{"frames", done_},
+              {"frames_left_alone", left_alone},
+              {"seconds", seconds},
+              {"frames_per_second", done_ / seconds},
+              {"frame_ms", frame_ms_},
+              {"build_ms", build_ms_},
+              {"rays", ray_stats(rays_)}}}};
+}
+
+std::string Run::summary(size_t left_alone) const {
+    const Sequence& s = sequence_;
+    const double seconds = seconds_since(start_);
+    std::string text =
+        fmt::format("{} frame{} of {} to {}", done_, done_ == 1 ? "" : "s", s.frames.first, s.frames.end - 1);
+    if (s.shard.count > 1) text += fmt::format(" (shard {}/{})", s.shard.index, s.shard.count);
+    if (left_alone > 0) text += fmt::format(", {} were there already", left_alone);
+    text += fmt::format(", {}x{}", arguments_.size.x, arguments_.size.y);
+    text += fmt::format("; {:.2f} s in all", seconds);
+    if (done_ > 0) text += fmt::format(", {:.3g} frames/s", done_ / seconds);
+    return device_.empty() ? text : text + " on " + device_;
+}
+
+// ---- pictures
+
+/// Throws Error where the files of a sequence would overwrite `inputs` or each other.
+void check_files(const RenderArguments& a, const FramePattern& pattern, const Sequence& sequence,
+                 const std::vector<fs::path>& inputs) {
+    const auto is_frame = [&](const fs::path& path) {
+        const auto frame = pattern.frame_of(path);
+        return frame && *frame >= sequence.frames.first && *frame < sequence.frames.end;
+    };
+    for (const fs::path& input : inputs)
+        if (is_frame(input)) fail("{} is an input and would be overwritten: name another output", input.string());
+    if (is_frame(a.stats)) fail("{} would be written twice: give each output a name of its own", a.stats.string());
+    const fs::path first = pattern.file(sequence.frames.first);
+    std::vector<fs::path> outputs = {first, manifest_path(a.output)};
+    for (const std::string& kind : a.aovs) outputs.push_back(aov_path(first, kind));
+    if (!a.stats.empty()) outputs.push_back(a.stats);
+    check_outputs(outputs, inputs);
+}
+
+/// Which frames are there already, wholly and not older than the manifest: those before it may show anything.
+class Finished {
+  public:
+    Finished(const RenderArguments& a, const FramePattern& pattern)
+        : aovs_(a.aovs), pattern_(pattern), since_(fs::last_write_time(manifest_path(a.output), error_)) {}
+
+    bool has(uint32_t frame) {
+        const fs::path file = pattern_.file(frame);
+        const auto time = fs::last_write_time(file, error_);
+        if (error_) return false;
+        const bool whole = std::all_of(aovs_.begin(), aovs_.end(), [&](const std::string& kind) {
+            return fs::exists(aov_path(file, kind), error_);
+        });
+        if (whole && time >= since_) return true;
+        outdated++;
+        return false;
+    }
+
+    size_t outdated = 0;  ///< frames that are there, but not finished
+
+  private:
+    std::error_code error_;
+    const std::vector<std::string>& aovs_;
+    const FramePattern& pattern_;
+    fs::file_time_type since_;
+};
+
+/// The frames that are left to render.
+std::vector<uint32_t> choose_frames(const RenderArguments& a, const FramePattern& pattern, const Sequence& sequence) {
+    std::vector<uint32_t> frames = sequence.numbers();
+    if (!a.sequence.resume) return frames;
+    Finished finished(a, pattern);
+    std::erase_if(frames, [&](uint32_t frame) { return finished.has(frame); });
+    if (finished.outdated > 0)
+        print_note(
+            fmt::format("{} of the frames that are there are older than {} or lack their auxiliary pictures: they "
+                        "are rendered again",
+                        finished.outdated, manifest_path(a.output).filename().string()));
+    return frames;
+}
+
+void render_pictures(const RenderArguments& a, const Sequence& sequence) {
+    const FramePattern pattern(a.output);
+    check_picture_name(a.output);
+    check_files(a, pattern, sequence, {a.scene, a.env});
+    Run run(a, sequence);
+    check_files(a, pattern, sequence, run.scene().scene.files);
+    watch_interrupts();
+    remove_stale_temporaries(a.output.parent_path());
+    settle_manifest(manifest_path(a.output), make_manifest(a, sequence, run.scene(), run.renderer_name()),
+                    a.sequence.resume || a.sequence.shard);
+    const std::vector<uint32_t> frames = choose_frames(a, pattern, sequence);
+    const size_t left_alone = sequence.numbers().size() - frames.size();
+    try {
+        run.render(frames, [&](uint32_t frame, const MadePicture& made) {
+            write_picture(made.picture, a.aovs, pattern.file(frame));
+        });
+    } catch (const Interrupted&) {
+        fail("interrupted after {} of {} frames: the same command with --resume goes on", run.done(), frames.size());
+    }
+    if (!a.stats.empty()) write_json(a.stats, run.stats(left_alone));
+    fmt::print("{}: {}\n", a.output.string(), run.summary(left_alone));
+}
+
+// ---- videos
+
+void check_video(const RenderArguments& a) {
+    const char* option = a.sequence.resume ? "--resume" : a.sequence.shard ? "--shard" : nullptr;
+    if (option)
+        fail(
+            "{} needs a file for each frame, a video is one: render pictures (-o NAME_%05d.png) and let ffmpeg make "
+            "the video of them",
+            option);
+    if (!a.aovs.empty()) fail("--aov writes pictures and a video is none: render pictures (-o NAME_%05d.exr)");
+    if (has_frame_number(a.output))
+        fail("'{}' has a place for a frame's number, but a video is one file: leave it out", a.output.string());
+    check_video_size(a.size);
+}
+
+void render_video(const RenderArguments& a, const Sequence& sequence) {
+    check_video(a);
+    const fs::path ffmpeg = find_ffmpeg();
+    std::vector<fs::path> outputs = {a.output};
+    if (!a.stats.empty()) outputs.push_back(a.stats);
+    check_outputs(outputs, {a.scene, a.env});
+    Run run(a, sequence);
+    watch_interrupts();
+    remove_stale_temporaries(a.output.parent_path());
+    const std::vector<uint32_t> frames = sequence.numbers();
+    try {
+        write_atomically(a.output, [&](const fs::path& temporary) {
+            VideoWriter video(ffmpeg, temporary, a.size, sequence.fps);
+            run.render(frames, [&](uint32_t, const MadePicture& made) { video.add(made.picture.encoded); });
+            video.finish();
+            if (fs::file_size(temporary) == 0) fail("ffmpeg wrote nothing and did not say why; no video was written");
+        });
+    } catch (const Interrupted&) {
+        fail("interrupted after {} of {} frames: no video was written; run it again", run.done(), frames.size());
+    }
+    if (!a.stats.empty()) write_json(a.stats, run.stats(0));
+    fmt::print("{}: {:.2f} s at {} frames/s; {}\n", a.output.string(), double(frames.size()) / sequence.fps,
+               sequence.fps, run.summary(0));
+}
+
+}  // namespace
+
+void run_sequence(const RenderArguments& a) {
+    a.tracing.check();
+    check_ranges(a);
+    const Sequence sequence = plan_sequence(a);
+    if (is_video(a.output)) return render_video(a, sequence);
+    if (sequence.numbers().empty()) {
+        FramePattern(a.output);
+        fmt::print("{}: no frames: shard {}/{} of {} has none\n", a.output.string(), sequence.shard.index,
+                   sequence.shard.count, sequence.frames.end - sequence.frames.first);
+        return;
+    }
+    render_pictures(a, sequence);
+}
+
+}  // namespace peelray

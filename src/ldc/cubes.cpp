@@ -1,0 +1,91 @@
+#include "ldc/cubes.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+#include "base/error.h"
+#include "ldc_grid.h"
+
+namespace peelray {
+namespace {
+
+/// As orderedBits of shaders/bounds.glsl.
+uint32_t ordered_bits(float x) {
+    const auto bits = std::bit_cast<uint32_t>(x);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+glm::uvec3 ordered_bits(const glm::vec3& p) {
+    return {ordered_bits(p.x), ordered_bits(p.y), ordered_bits(p.z)};
+}
+
+uint32_t rounded(uint32_t resolution) {
+    if (resolution < 16 || resolution > 2048)
+        fail("the LDI resolution {} is out of range: choose 16 to 2048 (--ldc)", resolution);
+    return (resolution + 15) / 16 * 16;
+}
+
+}  // namespace
+
+TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vertices,
+                                 std::span<const glm::uvec3> indices)
+    : count(uint32_t(indices.size())) {
+    // Two bits of a sample's id hold its axis.
+    if (indices.size() >= 1u << 30)
+        fail("the scene has {} triangles, but cubes hold fewer than 2^30: split the scene", indices.size());
+    positions = Buffer(device, "vertex positions", vertices.size_bytes());
+    triangles = Buffer(device, "triangle indices", indices.size_bytes());
+    Commands commands(device);
+    commands.upload(positions, vertices);
+    commands.upload(triangles, indices);
+}
+
+CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution) {
+    return ldcMakeGrid(lower, upper, rounded(resolution));
+}
+
+Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling)
+    : device_(device), bodies_(std::move(bodies)), sampling_(sampling) {
+    assert(!bodies_.empty());
+    Commands commands(device);
+    std::vector<LdcBody> table;
+    std::vector<glm::uvec3> lower, upper;
+    for (const CubeBody& body : bodies_) {
+        table.push_back({{}, body.first_triangle, body.triangles, rounded(body.resolution), 0, {}});
+        lower.push_back(ordered_bits(body.lower));
+        upper.push_back(ordered_bits(body.upper));
+    }
+    body_table = Buffer(device, "the table of bodies", table.size() * sizeof(LdcBody));
+    body_lower = Buffer(device, "lower bounds of bodies", lower.size() * sizeof(glm::uvec3));
+    body_upper = Buffer(device, "upper bounds of bodies", upper.size() * sizeof(glm::uvec3));
+    commands.upload(body_table, std::span<const LdcBody>(table));
+    commands.upload(body_lower, std::span<const glm::uvec3>(lower));
+    commands.upload(body_upper, std::span<const glm::uvec3>(upper));
+}
+
+void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& kept) {
+    // Entries are 31-bit numbers of nodes and samples.
+    if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
+        fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
+             size.nodes, size.samples);
+    grow(device_, commands, top_table, "the cubes' top table", size.tops * 8, kept.tops * 8);
+    grow(device_, commands, node_table, "the cubes' nodes", size.occupied * 256, kept.occupied * 256);
+    grow(device_, commands, voxel_table, "the cubes' voxels", size.nodes * 256, kept.nodes * 256);
+    grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
+    grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
+}
+
+std::vector<LdcBody> Cubes::download_bodies(Commands& commands) const {
+    return commands.download<LdcBody>(body_table, bodies_.size());
+}
+
+uint64_t Cubes::held_bytes() const {
+    uint64_t bytes = 0;
+    for (const Buffer* buffer : {&body_table, &body_lower, &body_upper, &top_table, &node_table, &voxel_table, &samples,
+                                 &sample_ids})
+        bytes += buffer->bytes();
+    return bytes;
+}
+
+}  // namespace peelray

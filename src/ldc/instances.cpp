@@ -1,0 +1,141 @@
+#include "ldc/instances.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "base/error.h"
+
+namespace peelray {
+namespace {
+
+uint32_t filled(uint32_t boxes) {
+    return (boxes + 7) / 8 * 8;
+}
+
+/// Buckets along the Morton curve, many more than instances, for these cluster: bits of each axis.
+uint32_t bits_for(uint32_t instances) {
+    return std::clamp((uint32_t(std::bit_width(instances)) + 2) / 3 + 2, 3u, 7u);
+}
+
+}  // namespace
+
+Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : device_(device) {
+    Commands commands(device);
+    assert(!infos.empty());
+    if (infos.size() > 1u << 24)
+        fail("the scene has {} instances of moving or repeated objects, at most 2^24 are supported", infos.size());
+    const auto count = uint32_t(infos.size());
+    tree_.instances = count;
+    uint32_t total = 0;
+    for (uint32_t boxes = filled(count);; boxes = filled(boxes / 8)) {
+        tree_.first[tree_.levels++] = total;
+        total += boxes;
+        if (boxes <= 8) break;
+    }
+    infos_ = Buffer(device, "what instances show", infos.size() * sizeof(InstanceInfo));
+    commands.upload(infos_, std::span<const InstanceInfo>(infos));
+    transforms_ = Buffer(device, "where instances stand", count * sizeof(GpuTransform));
+    table_ = Buffer(device, "instances", count * sizeof(GpuInstance));
+    cubes_ = Buffer(device, "cubes of instances", count * sizeof(PeelrayInstance));
+    boxes_ = Buffer(device, "boxes of instances", total * sizeof(PeelrayBox));
+    if (count <= 8) return;
+    unsorted_boxes_ = Buffer(device, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
+    if (count <= TREE_SMALL) return;
+    const uint64_t buckets = 1ull << (3 * bits_for(count));
+    middles_ = Buffer(device, "middles of instances", 24);
+    keys_ = Buffer(device, "keys of instances", count * sizeof(TreeKey));
+    sums_ = Buffer(device, "buckets of instances", buckets * 8);
+    block_sums_ = Buffer(device, "prefix sums of buckets", (buckets / SCAN_BLOCK + 2) * 8);
+    unsorted_instances_ = Buffer(device, "instances by bucket", count * 4);
+}
+
+void Instances::place(Commands& commands, std::span<const GpuTransform> transforms, uint32_t first) {
+    commands.upload(transforms_, transforms, first * sizeof(GpuTransform));
+}
+
+uint32_t Instances::boxes_of(uint32_t level) const {
+    uint32_t boxes = filled(tree_.instances);
+    for (uint32_t i = 0; i < level; i++) boxes = i + 1 == level ? boxes / 8 : filled(boxes / 8);
+    return boxes;
+}
+
+TreeParams Instances::tree_params() const {
+    TreeParams p{};
+    p.tree = tree_;
+    p.bits = bits_for(tree_.instances);
+    return p;
+}
+
+void Instances::record(Commands& commands, const Cubes& cubes) {
+    commands.begin_group("instances");
+    const InstanceParams p{count(), filled(count())};
+    // The only group of a small hierarchy needs no order.
+    const Buffer& boxes = count() <= 8 ? boxes_ : unsorted_boxes_;
+    commands.run(device_.pass("instances"),
+                 {{"transforms", transforms_},
+                  {"infos", infos_},
+                  {"bodies", cubes.body_table},
+                  {"body_lower", cubes.body_lower},
+                  {"body_upper", cubes.body_upper},
+                  {"instances", table_},
+                  {"instance_cubes", cubes_},
+                  {"instance_boxes", boxes}},
+                 p, groups_for(p.padded, 64));
+    if (count() > TREE_SMALL)
+        record_large(commands);
+    else if (count() > 8)
+        record_small(commands);
+    commands.end_group();
+}
+
+void Instances::record_small(Commands& commands) {
+    commands.run(device_.pass("tree_small"), {{"unsorted_boxes", unsorted_boxes_}, {"instance_boxes", boxes_}},
+                 tree_params(), {1});
+}
+
+void Instances::record_large(Commands& commands) {
+    TreeParams p = tree_params();
+    const Groups groups = groups_for(count(), 64);
+    const uint32_t buckets = 1u << (3 * p.bits);
+    commands.fill(middles_, ~0u, 0, 12);
+    commands.fill(middles_, 0, 12, 12);
+    commands.fill(sums_, 0, 0, uint64_t(buckets) * 8);
+    commands.run(device_.pass("tree_middles"), {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}}, p,
+                 groups_for(count(), 256));
+    commands.run(
+        device_.pass("tree_keys"),
+        {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}, {"tree_keys", keys_}, {"sums", sums_}}, p, groups);
+    const ScanParams scan{buckets, SCAN_NO_COUNTER};
+    const Groups scan_groups = groups_for(buckets, SCAN_BLOCK);
+    // No counter: any buffer does.
+    commands.run(device_.pass("scan_reduce"), {{"counters", infos_}, {"sums", sums_}, {"block_sums", block_sums_}},
+                 scan, scan_groups);
+    commands.run(device_.pass("scan_blocks"), {{"block_sums", block_sums_}}, scan, {1});
+    commands.run(device_.pass("scan_apply"), {{"counters", infos_}, {"sums", sums_}, {"block_sums", block_sums_}}, scan,
+                 scan_groups);
+    commands.run(device_.pass("tree_scatter"),
+                 {{"tree_keys", keys_}, {"sums", sums_}, {"unsorted_instances", unsorted_instances_}}, p, groups);
+    commands.run(device_.pass("tree_leaves"),
+                 {{"unsorted_boxes", unsorted_boxes_},
+                  {"tree_keys", keys_},
+                  {"sums", sums_},
+                  {"unsorted_instances", unsorted_instances_},
+                  {"instance_boxes", boxes_}},
+                 p, groups_for(filled(count()), 64));
+    for (p.level = 1; p.level < tree_.levels; p.level++) {
+        p.boxes = boxes_of(p.level);
+        p.filled = filled(p.boxes);
+        commands.run(device_.pass("tree_level"), {{"instance_boxes", boxes_}}, p, groups_for(p.filled, 64));
+    }
+}
+
+uint64_t Instances::bytes() const {
+    uint64_t bytes = 0;
+    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &unsorted_boxes_, &middles_, &keys_, &sums_,
+                                 &block_sums_, &unsorted_instances_})
+        bytes += buffer->bytes();
+    return bytes;
+}
+
+}  // namespace peelray

@@ -1,0 +1,43 @@
+// Bodies placed in the world, and the hierarchy over their boxes.
+#pragma once
+
+#include "ldc/cubes.h"
+
+namespace peelray {
+
+/// Instances of the bodies of some cubes. Transforms may come from the host or from a pass that writes them; after
+/// either, record() places the cubes anew.
+class Instances {
+  public:
+    /// `infos`: at least one; instances of the same body need not lie together here. Throws Error beyond 2^24 instances.
+    Instances(Device& device, const std::vector<InstanceInfo>& infos);
+
+    uint32_t count() const { return tree_.instances; }
+
+    /// Uploads where instances [first, first + transforms.size()) stand.
+    void place(Commands& commands, std::span<const GpuTransform> transforms, uint32_t first = 0);
+    const Buffer& transforms() const { return transforms_; }  ///< GpuTransform each
+
+    /// Records the passes that place the cubes as they are now, into the group "instances". Every build of a moving
+    /// body is followed by it.
+    void record(Commands& commands, const Cubes& cubes);
+
+    const Buffer& table() const { return table_; }  ///< GpuInstance each
+    const Buffer& cubes() const { return cubes_; }  ///< PeelrayInstance each
+    const Buffer& boxes() const { return boxes_; }  ///< PeelrayBox: the hierarchy, see PeelrayTree
+    const PeelrayTree& tree() const { return tree_; }
+    uint64_t bytes() const;
+
+  private:
+    void record_small(Commands& commands);
+    void record_large(Commands& commands);
+    TreeParams tree_params() const;
+    uint32_t boxes_of(uint32_t level) const;
+
+    Device& device_;
+    PeelrayTree tree_{};
+    Buffer infos_, transforms_, table_, cubes_, boxes_, unsorted_boxes_;
+    Buffer middles_, keys_, sums_, block_sums_, unsorted_instances_;  ///< of large hierarchies only
+};
+
+}  // namespace peelray

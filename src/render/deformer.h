@@ -1,0 +1,48 @@
+// Skins and morph targets on the GPU: the vertices of everything that changes its shape, once per frame.
+#pragma once
+
+#include "ldc/cubes.h"
+#include "scene/assembly.h"
+
+namespace peelray {
+
+/// Computes positions and normals of the bodies that deform, and their bounds.
+class Deformer {
+  public:
+    /// Uploads the shapes at rest, the joints' weights and the morph targets of the assembly's pieces.
+    Deformer(Device& device, const Scene& scene, const Assembly& assembly);
+
+    bool empty() const { return pieces_.empty(); }
+
+    /// Takes on the moment that `scene` is in: uploads joints and weights. Where a transform has come to turn a piece inside
+    /// out, or back, its triangles in `triangles` are turned over.
+    void pose(Commands& commands, const Scene& scene, const Buffer& triangles);
+
+    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies,
+    /// whose bounds have been emptied.
+    void record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles, const Buffer& normals) const;
+
+    uint64_t bytes() const;
+
+  private:
+    void add_rest(const Primitive& primitive, DeformPiece& piece);
+    void add_influences(const Primitive& primitive, DeformPiece& piece);
+    void add_targets(const Primitive& primitive, DeformPiece& piece);
+    void turn_over(Commands& commands, size_t piece, const Primitive& primitive, bool mirrors, const Buffer& triangles);
+
+    Device& device_;
+    std::vector<Assembly::Piece> places_;
+    std::vector<DeformPiece> pieces_;
+    std::vector<bool> mirrored_;  ///< as the triangles lie in their buffer now
+    DeformParams params_{};
+    bool flat_ = false;
+    /// What the constructor gathers for the upload.
+    struct Gathered {
+        std::vector<glm::vec3> positions, normals, targets;
+        std::vector<JointInfluence> influences;
+    } gathered_;
+    uint32_t joint_count_ = 0, weight_count_ = 0;
+    Buffer piece_table_, rest_positions_, rest_normals_, influences_, targets_, weights_, joints_;
+};
+
+}  // namespace peelray

@@ -1,0 +1,38 @@
+#include "render/ray_scene.h"
+
+#include "render/transforms.h"
+
+namespace peelray {
+
+RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice)
+    : device_(device),
+      triangles_(device, assembly.positions, assembly.triangles),
+      triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
+      instances_(device, instance_infos(assembly)),
+      cubes_(device, assembly, choice),
+      shown_(assembly.bodies.size()) {
+    Commands commands(device);
+    commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
+    instances_.place(commands, transforms_of(assembly.instances, world_matrices(scene)));
+    for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;
+    // What deforms lies in the assembly as it is now.
+    for (bool built = false; !built;) {
+        const bool fixed = cubes_.build_fixed(commands, triangles_);
+        if (fixed) build_times_ = commands.times(), build_ms_ = commands.elapsed_ms();
+        cubes_.record(commands, triangles_);
+        instances_.record(commands, cubes_.cubes());
+        commands.submit();
+        built = cubes_.finish(commands);
+    }
+    build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());
+    build_ms_ += commands.elapsed_ms();
+}
+
+void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
+    ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
+    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
+                 cubes_.choice().hit, any_hit);
+    record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
+}
+
+}  // namespace peelray

@@ -1,0 +1,33 @@
+// A scene for rays alone: cubes and what tells whose triangles were hit, nothing to shade with.
+#pragma once
+
+#include "render/scene_cubes.h"
+
+namespace peelray {
+
+class RayScene {
+  public:
+    /// Uploads the scene in its present moment and builds its cubes.
+    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice);
+
+    /// Records the tracing of `count` rays (Ray each): file_hits[i] (FileHit each) for rays[i], see record_trace.
+    void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
+
+    const SceneCubes& cubes() const { return cubes_; }
+    std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }
+    std::vector<uint32_t> shown() const { return shown_; }  ///< instances of each body
+    const std::vector<PassTime>& build_times() const { return build_times_; }
+    double build_ms() const { return build_ms_; }
+
+  private:
+    Device& device_;
+    TriangleBuffers triangles_;
+    Buffer triangle_ids_, hits_;
+    Instances instances_;
+    SceneCubes cubes_;
+    std::vector<uint32_t> shown_;
+    std::vector<PassTime> build_times_;
+    double build_ms_ = 0;
+};
+
+}  // namespace peelray

@@ -1,0 +1,118 @@
+#include "render/scene_cubes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace peelray {
+namespace {
+
+/// `auto` of planar hits, which are as good as their voxels are fine.
+constexpr float kPlanarResolution = 1024;
+/// Share of the resolution that every body gets, however small it is beside the largest; of more bodies than a few only as
+/// much that its voxels are at most so many times as fine.
+constexpr float kLeast = 0.25f, kFinest = 4;
+constexpr size_t kFewBodies = 16;
+
+float longest_side(const Assembly::Body& body) {
+    const glm::vec3 size = body.upper - body.lower;
+    return std::max({size.x, size.y, size.z, 0.0f});
+}
+
+uint32_t in_sixteens(float voxels) {
+    return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
+}
+
+std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice) {
+    const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice);
+    std::vector<CubeBody> bodies;
+    for (size_t i = 0; i < assembly.bodies.size(); i++) {
+        const Assembly::Body& body = assembly.bodies[i];
+        bodies.push_back({body.first_triangle, body.triangles, resolutions[i], body.lower, body.upper});
+    }
+    return bodies;
+}
+
+LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
+    LdcCounters sum = a;
+    sum.fragments += b.fragments;
+    sum.big += b.big;
+    sum.tiles += b.tiles;
+    sum.tops += b.tops;
+    sum.occupied += b.occupied;
+    sum.nodes += b.nodes;
+    sum.voxels += b.voxels;
+    sum.long_lists += b.long_lists;
+    sum.longest = std::max(a.longest, b.longest);
+    sum.degenerate += b.degenerate;
+    sum.invalid += b.invalid;
+    return sum;
+}
+
+}  // namespace
+
+std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice) {
+    float largest = 1e-30f;
+    for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
+    const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
+    const float n = choice.ldc == 0 ? kPlanarResolution : float(choice.ldc);
+    std::vector<uint32_t> resolutions;
+    for (size_t i = 0; i < assembly.bodies.size(); i++) {
+        const Assembly::Body& body = assembly.bodies[i];
+        const float share = longest_side(body) / largest;
+        // Of very many small bodies each would get more than it can use.
+        const float least = assembly.bodies.size() > kFewBodies ? std::min(kLeast, kFinest * share) : kLeast;
+        uint32_t resolution = in_sixteens(n * std::max(share, least));
+        // Exact hits need no finer voxels than a sixteenth of a triangle's edge, whatever is asked for.
+        if (choice.hit == HitTest::exact)
+            resolution = std::min(resolution, in_sixteens(16 * std::sqrt(float(body.triangles))));
+        if (by_triangles) resolution = serving_resolution(body.triangles, choice.rebuild || i >= assembly.fixed);
+        resolutions.push_back(resolution);
+    }
+    return resolutions;
+}
+
+SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice)
+    : device_(device),
+      choice_(choice),
+      fixed_(choice.rebuild ? 0 : assembly.fixed),
+      cubes_(device, cube_bodies(assembly, choice), sampling_for(choice.hit)) {}
+
+bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangles) {
+    if (fixed_built_) return false;
+    if (fixed_ > 0) {
+        // Its scratch memory goes when the work is done.
+        ComputeBuilder builder(device_, commands, cubes_, 0, fixed_);
+        builder.build(commands, triangles);
+        fixed_counts_ = builder.counts();
+        fixed_size_ = builder.size();
+        fixed_redone_ = builder.redone();
+    }
+    const auto all = uint32_t(cubes_.bodies().size());
+    if (fixed_ < all)
+        builder_ = std::make_unique<ComputeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_);
+    fixed_built_ = true;
+    return fixed_ > 0;
+}
+
+void SceneCubes::record(Commands& commands, const TriangleBuffers& triangles) {
+    if (builder_) builder_->record(commands, triangles);
+}
+
+bool SceneCubes::finish(Commands& commands) {
+    return !builder_ || builder_->finish(commands);
+}
+
+SceneCubes::Stats SceneCubes::stats() const {
+    Stats stats;
+    stats.bodies = uint32_t(cubes_.bodies().size());
+    stats.fixed = fixed_;
+    for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
+    stats.counts = builder_ ? sum_of(fixed_counts_, builder_->counts()) : fixed_counts_;
+    stats.bytes = (fixed_size_ + (builder_ ? builder_->size() : TableSize{})).bytes() +
+                  cubes_.bodies().size() * (sizeof(LdcBody) + 24);
+    stats.scratch_bytes = builder_ ? builder_->scratch_bytes() : 0;
+    stats.redone = fixed_redone_ + (builder_ ? builder_->redone() : 0);
+    return stats;
+}
+
+}  // namespace peelray

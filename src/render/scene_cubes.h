@@ -1,0 +1,62 @@
+// The cubes of a scene: those of bodies that never change their shape, built once, and those that are built for every frame.
+#pragma once
+
+#include <memory>
+
+#include "ldc/compute_builder.h"
+#include "ldc/tracer.h"
+#include "scene/assembly.h"
+
+namespace peelray {
+
+/// How cubes are to be: what the settings say, with what `auto` stands for filled in.
+struct CubeChoice {
+    uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
+    HitTest hit = HitTest::exact;
+    bool rebuild = false;  ///< every cube anew for every frame, as if everything deformed
+    bool operator==(const CubeChoice&) const = default;
+};
+
+/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but at
+/// least a quarter of it.
+std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice);
+
+class SceneCubes {
+  public:
+    /// Makes room for the cubes; nothing is built yet.
+    SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice);
+
+    const Cubes& cubes() const { return cubes_; }
+    const CubeChoice& choice() const { return choice_; }
+
+    /// Builds what is built once, if that has not been done; true if it did. Submits, until everything fits.
+    bool build_fixed(Commands& commands, const TriangleBuffers& triangles);
+
+    /// Records the build of what deforms.
+    void record(Commands& commands, const TriangleBuffers& triangles);
+    /// After the submission: false if something did not fit; then record again.
+    bool finish(Commands& commands);
+
+    struct Stats {
+        uint32_t bodies = 0, fixed = 0;  ///< fixed: built once
+        uint32_t resolution = 0;         ///< the largest of all
+        LdcCounters counts{};            ///< of all bodies; longest: the longest list of all
+        uint64_t bytes = 0;              ///< of the tables in use
+        uint64_t scratch_bytes = 0;
+        uint32_t redone = 0;  ///< how often a build did not fit and was done again
+    };
+    Stats stats() const;
+
+  private:
+    Device& device_;
+    CubeChoice choice_;
+    uint32_t fixed_;
+    Cubes cubes_;
+    LdcCounters fixed_counts_{};
+    TableSize fixed_size_;
+    bool fixed_built_ = false;
+    uint32_t fixed_redone_ = 0;
+    std::unique_ptr<ComputeBuilder> builder_;  ///< of what deforms
+};
+
+}  // namespace peelray

@@ -1,0 +1,86 @@
+// Geometry that is not animated by keys but computed for every moment: a water surface, thousands of bodies in flight. On the
+// GPU passes of its own make it (src/render/generators), and nobody reads it back; simulate() is their twin on the CPU.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace peelray {
+
+struct Scene;
+
+/// A square of water in still air: heights h over a grid, after the wave equation h'' = c² ∆h - k h' with walls that reflect,
+/// by explicit steps of equal length (semi-implicit Euler: velocities first). Drops fall into it.
+struct Water {
+    int node = -1;        ///< its mesh has one primitive: (cells + 1)² vertices, row by row along x
+    uint32_t cells = 0;   ///< along each side
+    float size = 0;       ///< of the square around the node's origin, metres
+    float speed = 0;      ///< of waves, c, metres a second
+    float damping = 0;    ///< k, per second
+    uint32_t steps_per_second = 0;
+    std::vector<float> start;  ///< heights at time 0, when all is at rest
+
+    /// Something that swims: it stands on the surface's mean height and slope under it.
+    struct Float {
+        int node = -1;
+        glm::vec2 around{0};   ///< x, z of the circle that it drifts along
+        float drift = 0;       ///< radius of the circle
+        float period = 1;      ///< seconds for a round
+        float phase = 0;       ///< share of a round at time 0
+        float radius = 0;      ///< of what it displaces
+    };
+    std::vector<Float> floats;
+
+    // Where the twin on the CPU is.
+    uint64_t step = 0;
+    std::vector<double> heights, velocities;  ///< empty: at time 0
+
+    float spacing() const { return size / float(cells); }
+};
+
+/// A drop: what it adds to the velocities at the distance r is strength (1 - r²/2w²) exp(-r²/2w²), which adds no water.
+struct WaterDrop {
+    glm::vec2 at{0};
+    float strength = 0;  ///< metres a second; 0: none falls
+    float width = 1;     ///< w, metres
+};
+
+/// The drop that falls at the beginning of a step.
+WaterDrop drop_at(const Water& water, uint64_t step);
+
+/// Whole steps up to a moment, and what is left of it, seconds.
+struct WaterMoment {
+    uint64_t steps;
+    double rest;
+};
+WaterMoment moment_of(const Water& water, double time);
+
+/// Where a float is at a moment: x, z, and how far it has turned about the vertical, radians.
+glm::vec3 drift_of(const Water::Float& f, double time);
+
+/// Bodies that fly out of a fountain, bounce and vanish, over and over (shaders/swarm_motion.h).
+struct Swarm {
+    std::vector<int> nodes;  ///< one per body
+    float period = 1;        ///< seconds, after which all is as before
+};
+
+/// What of a scene is generated, and which of its animations makes it go on.
+struct Generated {
+    std::vector<Water> waters;
+    std::vector<Swarm> swarms;
+    int animation = -1;
+    double time = 0;  ///< the moment that the scene was put into, seconds
+    /// All that is generated stays inside this box, at any time.
+    struct Reach {
+        glm::vec3 lower{0}, upper{0};
+    } reach;
+
+    bool empty() const { return waters.empty() && swarms.empty(); }
+};
+
+/// Puts what is generated into the moment scene.generated.time: vertices of meshes, places of nodes. animate() only sets the
+/// moment: who looks at geometry on the CPU calls this afterwards. The result depends on nothing but the moment.
+void simulate(Scene& scene);
+
+}  // namespace peelray

@@ -1,0 +1,39 @@
+// Bodies with their cubes and an instance of each where it is: what most tests of cubes need.
+#pragma once
+
+#include "ldc/compute_builder.h"
+#include "ldc/tracer.h"
+
+namespace peelray::test {
+
+/// One body, built once.
+struct SingleCube {
+    TriangleBuffers triangles;
+    Cubes cubes;
+    ComputeBuilder builder;
+    Instances instances;
+    CubeGrid grid{};
+
+    SingleCube(Device& device, Commands& commands, std::span<const glm::vec3> positions,
+               std::span<const glm::uvec3> indices, const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution,
+               Sampling sampling)
+        : triangles(device, positions, indices),
+          cubes(device, {{0, uint32_t(indices.size()), resolution, lower, upper}}, sampling),
+          builder(device, commands, cubes, 0, 1),
+          instances(device, {{0, 0, 0}}) {
+        const GpuTransform here{glm::mat3(1), glm::vec3(0)};
+        instances.place(commands, std::span<const GpuTransform>(&here, 1));
+        build(commands);
+    }
+
+    void build(Commands& commands) {
+        builder.build(commands, triangles);
+        instances.record(commands, cubes);
+        commands.submit();
+        grid = cubes.download_bodies(commands)[0].grid;
+    }
+    const LdcCounters& counts() const { return builder.counts(); }
+    TracedScene traced() const { return {cubes, instances, triangles}; }
+};
+
+}  // namespace peelray::test
