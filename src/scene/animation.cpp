@@ -28,7 +28,7 @@ void make_unit(std::vector<float>& rotation) {
     double length2 = 0;
     for (const float v : rotation) length2 += double(v) * v;
     const double length = std::sqrt(length2);
-    if (!(length > 1e-12)) {
+    if (!(length > 1e-12) || !std::isfinite(length)) {
         rotation = {0, 0, 0, 1};
         return;
     }

@@ -124,6 +124,7 @@ Box bounds(const Scene& scene) {
 
 Box bounds_over(Scene& scene, const std::string& which) {
     const std::vector<double> times = moments(find_animations(scene, which));
+    complete_targets(scene);  // which thinned() copies
     stand_at_rest(scene);
     Box box = bounds(scene);
     if (motion_of(scene, which).generates) {

@@ -1,6 +1,7 @@
 // Skins and animations of a glTF file.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "scene/gltf.h"
 
@@ -23,6 +24,9 @@ std::vector<glm::mat4> inverse_bind_matrices(GltfLoader& loader, int accessor, s
     if (info.components != 16 || info.count < joints)
         fail("{}: inverseBindMatrices needs a 4x4 matrix for each of {} joints, {} has {} of {} numbers", where, joints,
              info.where, info.count, info.components);
+    if (!info.is_float())
+        fail("{}: inverseBindMatrices must be floats, {} are components of type {}", where, info.where,
+             info.component_type);
     const std::vector<float> values = loader.file.floats(accessor);
     for (size_t i = 0; i < joints; ++i)
         for (int k = 0; k < 16; ++k) {
@@ -43,16 +47,22 @@ class AnimationReader {
     Animation read(const std::vector<int>& nodes) {
         Animation out;
         out.name = from_.name;
+        std::set<std::pair<int, AnimationChannel::Path>> moved;
         for (size_t i = 0; i < from_.channels.size(); ++i) {
             const std::string where = fmt::format("{}.channels[{}]", where_, i);
             const tinygltf::AnimationChannel& from = from_.channels[i];
             if (from.sampler < 0 || size_t(from.sampler) >= from_.samplers.size())
                 fail("{}: sampler {} is out of range, the animation has {}", where, from.sampler,
                      from_.samplers.size());
-            const int node = from.target_node < 0 ? -1 : nodes[size_t(from.target_node)];
+            // A channel without a node names one beyond the last, see check_gltf().
+            const int node = size_t(from.target_node) < nodes.size() ? nodes[size_t(from.target_node)] : -1;
             AnimationChannel channel;
             if (!accept(from.target_path, node, channel)) continue;
             read_keys(from_.samplers[size_t(from.sampler)], channel, where);
+            if (!moved.emplace(node, channel.path).second)
+                ++loader_.ignored
+                      ["{} animation channels that move what an earlier one moves already: the later one "
+                       "counts"];
             out.duration = std::max(out.duration, channel.times.back());
             out.channels.push_back(std::move(channel));
         }
@@ -102,20 +112,39 @@ class AnimationReader {
         else if (!sampler.interpolation.empty() && sampler.interpolation != "LINEAR")
             fail("{}: the interpolation \"{}\" is unknown: there are STEP, LINEAR and CUBICSPLINE", where,
                  printable(sampler.interpolation, 20));
+        check_types(sampler, channel, where);
         channel.times = loader_.file.floats(sampler.input);
         channel.values = loader_.file.floats(sampler.output);
         if (channel.times.empty()) fail("{}: the animation has no keys", where);
-        for (size_t i = 0; i < channel.times.size(); ++i)
-            if (!std::isfinite(channel.times[i]) || channel.times[i] < 0 ||
-                (i > 0 && channel.times[i] <= channel.times[i - 1]))
+        for (size_t i = 0; i < channel.times.size(); ++i) {
+            if (!std::isfinite(channel.times[i]) || channel.times[i] < 0)
+                fail("{}: the time {} of key {} is no number of seconds from 0 up; repair the animation", where,
+                     channel.times[i], i);
+            if (i > 0 && channel.times[i] <= channel.times[i - 1])
                 fail("{}: the time {} of key {} is not after the one before; repair the animation", where,
                      channel.times[i], i);
+        }
         const size_t per_key = channel.width * (channel.interpolation == Interpolation::cubic ? 3 : 1);
         if (channel.values.size() != channel.times.size() * per_key)
             fail("{}: {} keys need {} numbers, the output has {}", where, channel.times.size(),
                  channel.times.size() * per_key, channel.values.size());
         for (const float value : channel.values)
             if (!std::isfinite(value)) fail("{}: a value is not finite; repair the animation", where);
+    }
+
+    void check_types(const tinygltf::AnimationSampler& sampler, const AnimationChannel& channel,
+                     const std::string& where) const {
+        const GltfFile::Accessor in = loader_.file.accessor(sampler.input), out = loader_.file.accessor(sampler.output);
+        if (in.components != 1 || !in.is_float())
+            fail("{}: key times must be single floats, {} has {} components of type {}", where, in.where, in.components,
+                 in.component_type);
+        // Weights come one number an element, however many targets there are.
+        const uint32_t components = channel.path == AnimationChannel::Path::weights ? 1 : channel.width;
+        if (out.components != components)
+            fail("{}: its values need {} components, {} has {}", where, components, out.where, out.components);
+        if (!out.is_float() && !out.normalized)
+            fail("{}: its values must be floats or normalized integers, {} are components of type {}", where, out.where,
+                 out.component_type);
     }
 
     GltfLoader& loader_;

@@ -143,7 +143,7 @@ Members material_members() {
 }
 
 /// What the loader reads of a file. What is not listed never reaches tinygltf.
-Members file_members(size_t view_without_bytes) {
+Members file_members(size_t view_without_bytes, size_t no_node) {
     return {
         required(object("asset", {required(text("version"))})), texts("extensionsUsed"), index("scene", "scenes"),
         objects("scenes", {indices("nodes", "nodes")}),
@@ -166,12 +166,12 @@ Members file_members(size_t view_without_bytes) {
                                         required(size("byteLength")), size("byteStride")}),
                 json::array()),
         objects("accessors", accessor_members(view_without_bytes)),
-        objects("animations",
-                {text("name"),
-                 objects("samplers", {required(index("input", "accessors")), required(index("output", "accessors")),
-                                      text("interpolation")}),
-                 objects("channels", {required(whole("sampler")),
-                                      required(object("target", {index("node", "nodes"), required(text("path"))}))})}),
+        objects("animations", {text("name"),
+                               objects("samplers", {required(index("input", "accessors")),
+                                                    required(index("output", "accessors")), text("interpolation")}),
+                               objects("channels", {required(whole("sampler")),
+                                                    required(object("target", {or_else(index("node", "nodes"), no_node),
+                                                                               required(text("path"))}))})}),
         objects("skins",
                 {text("name"), index("inverseBindMatrices", "accessors"), required(indices("joints", "nodes"))}),
         // The values that stand for missing ones are those that the loader does not use.
@@ -336,7 +336,8 @@ json check_gltf(const json& root, const std::string& name) {
         fail("{}: glTF version \"{}\" is not supported; convert it to glTF 2.0", name,
              printable(version->get<std::string>(), 20));
     check_required_extensions(root, name);  // before the parts whose gaps such an extension would explain
-    json out = Checker(root).object(root, file_members(length_of(find(root, "bufferViews"))), name);
+    json out = Checker(root).object(
+        root, file_members(length_of(find(root, "bufferViews")), length_of(find(root, "nodes"))), name);
     out["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
     return out;
 }

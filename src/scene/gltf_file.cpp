@@ -206,6 +206,7 @@ GltfFile::Accessor GltfFile::accessor(int index) const {
     out.count = static_cast<uint32_t>(from.count);
     out.components = static_cast<uint32_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(from.type)));
     out.component_type = static_cast<uint32_t>(from.componentType);
+    out.normalized = from.normalized;
     // tinygltf also knows signed integers and doubles, which the format does not.
     if (from.componentType > TINYGLTF_COMPONENT_TYPE_FLOAT || from.componentType == TINYGLTF_COMPONENT_TYPE_INT)
         fail("{}: the component type {} is unknown", out.where, from.componentType);

@@ -38,6 +38,8 @@ class GltfFile {
         uint32_t count = 0;
         uint32_t components = 0;      ///< 1 to 4 (SCALAR to VEC4), 4, 9, 16 for matrices
         uint32_t component_type = 0;  ///< 5120 to 5126
+        bool normalized = false;      ///< integers that stand for [0, 1] or [-1, 1]
+        bool is_float() const { return component_type == 5126; }
     };
     /// What an accessor says about itself; its data is not touched.
     Accessor accessor(int index) const;

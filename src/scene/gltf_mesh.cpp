@@ -140,30 +140,60 @@ class PrimitiveReader {
 
     /// JOINTS_0 with WEIGHTS_0 and JOINTS_1 with WEIGHTS_1; whether the joints exist is for the skin to say.
     void read_joints(Primitive& out) {
-        for (int set = 0; set < 2; ++set) {
+        size_t read = 0;
+        for (int set = 0; set < JointWeights::most / 4; ++set) {
             const std::string joints = fmt::format("JOINTS_{}", set), weights = fmt::format("WEIGHTS_{}", set);
             if (!has(joints.c_str()) || !has(weights.c_str())) break;
-            const std::vector<glm::vec4> j = vectors<glm::vec4>(joints.c_str()),
-                                         w = vectors<glm::vec4>(weights.c_str());
-            check_count(joints.c_str(), j.size(), out);
-            check_count(weights.c_str(), w.size(), out);
-            out.joints.resize(out.positions.size());
-            for (size_t i = 0; i < j.size(); ++i)
-                for (int k = 0; k < 4; ++k) {
-                    const auto slot = static_cast<size_t>(4 * set + k);
-                    out.joints[i].joints[slot] = static_cast<uint16_t>(std::clamp(j[i][k], 0.f, 65535.f));
-                    out.joints[i].weights[slot] = std::isfinite(w[i][k]) ? std::max(w[i][k], 0.f) : 0.f;
-                }
+            read_joint_set(out, set, joints.c_str(), weights.c_str());
+            read += 2;
         }
-        size_t rescaled = 0;
+        const auto there = std::count_if(from_.attributes.begin(), from_.attributes.end(), [](const auto& attribute) {
+            return attribute.first.starts_with("JOINTS_") || attribute.first.starts_with("WEIGHTS_");
+        });
+        if (static_cast<size_t>(there) > read)
+            ++loader_.ignored
+                  ["{} primitives with sets of joints or weights that lack their other half, or beyond "
+                   "eight a vertex: those sets ignored"];
+        rescale_weights(out);
+    }
+
+    void read_joint_set(Primitive& out, int set, const char* joints, const char* weights) {
+        const GltfFile::Accessor info = loader_.file.accessor(from_.attributes.at(joints));
+        const bool is_unsigned =
+            info.component_type == 5121 || info.component_type == 5123 || info.component_type == 5125;
+        if (!is_unsigned || info.normalized)
+            fail("{}: {} must be unsigned integers, {} are {}components of type {}", where_, joints, info.where,
+                 info.normalized ? "normalized " : "", info.component_type);
+        const std::vector<glm::vec4> j = vectors<glm::vec4>(joints), w = vectors<glm::vec4>(weights);
+        check_count(joints, j.size(), out);
+        check_count(weights, w.size(), out);
+        out.joints.resize(out.positions.size());
+        size_t refused = 0;
+        for (size_t i = 0; i < j.size(); ++i)
+            for (int k = 0; k < 4; ++k) {
+                const auto slot = static_cast<size_t>(4 * set + k);
+                out.joints[i].joints[slot] = static_cast<uint16_t>(std::clamp(j[i][k], 0.f, 65535.f));
+                const bool is_weight = std::isfinite(w[i][k]) && w[i][k] >= 0;
+                out.joints[i].weights[slot] = is_weight ? w[i][k] : 0.f;
+                refused += !is_weight;
+            }
+        if (refused) loader_.ignored["{} joint weights that are negative or not finite count as 0"] += refused;
+    }
+
+    void rescale_weights(Primitive& out) {
+        size_t rescaled = 0, unheld = 0;
         for (JointWeights& vertex : out.joints) {
-            float sum = 0;
+            double sum = 0;
             for (const float weight : vertex.weights) sum += weight;
-            rescaled += std::abs(sum - 1) > 1e-2f;
-            if (sum > 0)
-                for (float& weight : vertex.weights) weight /= sum;
+            if (!(sum > 0)) {
+                ++unheld;
+                continue;
+            }
+            rescaled += std::abs(sum - 1) > 1e-2;
+            for (float& weight : vertex.weights) weight = static_cast<float>(weight / sum);
         }
         if (rescaled) loader_.ignored["{} vertices whose joint weights do not sum to one rescaled"] += rescaled;
+        if (unheld) loader_.ignored["{} vertices that no joint holds follow their node"] += unheld;
     }
 
     void read_targets(Primitive& out) {

@@ -104,8 +104,9 @@ float triangle_size(const vec3& p) {
     if (p.y > 1.25f && p.z > 0.05f) return 0.0155f;
     if (p.y < 0.035f) return 0.012f;
     if (p.y < 0.17f || (std::abs(p.x) > 0.27f && p.y < 0.8f)) return 0.015f;
-    if (std::abs(p.x) > 0.12f && p.y > 0.84f && p.y < 1.02f) return 0.016f;  // armpits and elbows
-    return std::abs(p.y - 0.77f) < 0.03f ? 0.017f : 0.023f;
+    if (std::abs(p.x) > 0.12f && p.y > 0.84f && p.y < 1.02f) return 0.016f;                        // armpits and elbows
+    if (p.z > 0.09f && std::abs(p.x - 0.06f) < 0.07f && p.y > 0.93f && p.y < 1.2f) return 0.015f;  // the scarf's end
+    return std::abs(p.y - 0.77f) < 0.03f ? 0.017f : 0.0235f;
 }
 
 /// How far down the line between two joints of its side a point lies, and how far off that line.

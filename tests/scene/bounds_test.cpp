@@ -93,6 +93,15 @@ TEST(Bounds, KeepTheTipsOfLargeMeshes) {
     EXPECT_EQ(box.upper, glm::vec3(13, 21, 35));
 }
 
+TEST(Bounds, FollowTargetsThatAreMadeLater) {
+    Scene scene = pair();
+    scene.meshes[0].primitives[0].make_targets = [](const Primitive& p) {
+        return std::vector<MorphTarget>{{std::vector<glm::vec3>(p.positions.size(), glm::vec3(0, 0, 2)), {}}};
+    };
+    scene.animations.push_back({"morph", 1, {{1, Path::weights, Interpolation::linear, 1, {0, 1}, {0, 1.5f}}}});
+    EXPECT_EQ(bounds_over(scene, "morph").upper, glm::vec3(1, 1, 3));
+}
+
 TEST(Bounds, FollowSkinsAndMorphTargets) {
     Scene scene = pair();
     Primitive& p = scene.meshes[0].primitives[0];

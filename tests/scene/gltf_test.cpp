@@ -403,7 +403,7 @@ TEST(Gltf, BadAnimationsAndSkinsAreRefused) {
         [](json& g) {
             g["animations"][0]["samplers"][0]["input"] = add_accessor(g, pack<float>({0, NAN, 1}), 5126, "SCALAR", 3);
         },
-        "key 1 is not after the one before");
+        "of key 1 is no number of seconds");
     refuse(
         [](json& g) {
             g["animations"][0]["samplers"][0]["output"] = add_accessor(g, pack<float>({0, 0, 0}), 5126, "VEC3", 1);

@@ -123,10 +123,18 @@ TEST(PartedMesh, IsCutAlongItsLines) {
         for (int k = 0; k < 3; ++k) {
             const vec3& p = cut.positions[triangles.back()[k]];
             ASSERT_NEAR(glm::length(p), 1, 2e-3f);
-            if (part == 0) ASSERT_LT(p.y, 0.3f + 2e-3f);
-            if (part > 0) ASSERT_GT(p.y, 0.3f - 2e-3f);
-            if (part == 1) ASSERT_LT(p.x, 0.1f + 2e-3f);
-            if (part == 2) ASSERT_GT(p.x, 0.1f - 2e-3f);
+            if (part == 0) {
+                ASSERT_LT(p.y, 0.3f + 2e-3f);
+            }
+            if (part > 0) {
+                ASSERT_GT(p.y, 0.3f - 2e-3f);
+            }
+            if (part == 1) {
+                ASSERT_LT(p.x, 0.1f + 2e-3f);
+            }
+            if (part == 2) {
+                ASSERT_GT(p.x, 0.1f - 2e-3f);
+            }
         }
     }
     EXPECT_EQ(euler_number(triangles), 2);
@@ -179,8 +187,12 @@ TEST(SkinWeights, FlowAlongAndNeverAcrossAGap) {
         }
         const vec3& p = mesh.positions[i];
         ASSERT_NEAR(sum, 1, 1e-5f);
-        if (p.y > 0.6f) EXPECT_FLOAT_EQ(of_right, p.x > 0 ? 1.f : 0.f);
-        if (std::abs(p.x) < 0.02f) EXPECT_NEAR(of_right, 0.5f, 0.35f);
+        if (p.y > 0.6f) {
+            EXPECT_FLOAT_EQ(of_right, p.x > 0 ? 1.f : 0.f);
+        }
+        if (std::abs(p.x) < 0.02f) {
+            EXPECT_NEAR(of_right, 0.5f, 0.35f);
+        }
     }
 }
 
