@@ -29,6 +29,22 @@ SCENES = [  # name, file or built-in, options
     ("TransmissionTest", "gltf/TransmissionTest.glb", []),
     ("ToyCar", "gltf/ToyCar/ToyCar.gltf", []),
 ]
+WALK = ["--animation", "all", "--floor"]
+MOVING = [  # name, file or built-in, options, seconds
+    ("tiny, Walk", "skinned/tiny.glb", ["--animation", "Walk", "--floor"], [0, 0.4, 1.7]),
+    ("CesiumMan", "skinned/CesiumMan.glb", WALK, [0.7, 1.5]),
+    ("RiggedFigure", "skinned/RiggedFigure.glb", WALK, [0.2, 1]),
+    ("AnimatedMorphCube", "skinned/AnimatedMorphCube.glb", WALK, [1.3, 3.1]),
+    ("InterpolationTest", "skinned/InterpolationTest.glb", WALK, [0.6, 1.4]),
+    ("BoxAnimated", "skinned/BoxAnimated.glb", WALK, [0.8, 2.1]),
+    ("Animation_Skin_08", "skinned/AssetGenerator/Animation_Skin_08.gltf", WALK, [0.4, 1.3]),
+    ("Animation_Skin_10", "skinned/AssetGenerator/Animation_Skin_10.gltf", WALK, [0.4, 1.3]),
+    ("walker", "builtin:walker", [], [0.5, 3.1]),
+    ("blob 100K, swell", "builtin:blob:100000", [], [0.7]),
+    ("waves", "builtin:waves", [], [0, 0.9, 2.5]),
+    ("particles, one bounce", "builtin:particles", ["--bounces", "1"], [0, 1.6]),
+    ("particles", "builtin:particles", [], [1.6]),
+]
 EXACT_BARS = {"flip": 0.002, "share_different": 0.001}
 PLANAR_BAR = 0.02
 STAGES = [  # what the pixels off come from: each row adds to the one before
@@ -70,19 +86,54 @@ def row(name, triangles, label, d, bars):
             f"{d['psnr_db'] or float('inf'):.1f} | {100 * d['share_different']:.4f}{mark('share_different')} |")
 
 
+def rows_of(name, result, size, results, **about):
+    """Prints a row for each picture of a report."""
+    results.append({"name": name, "ldc": size, "result": result, **about})
+    for picture in result["pictures"]:
+        d = picture.get("difference")
+        if not d:
+            continue
+        label = picture["name"] if picture["name"] == "cubemap" else f"{picture['name'][4:]} {size}"
+        bars = {}
+        if picture["name"] == "ldc exact":
+            bars = EXACT_BARS
+        elif picture["name"] == "ldc planar" and (size == "auto" or int(size) >= 1024):
+            bars = {"flip": PLANAR_BAR}
+        print(row(name, result["triangles"], label, d, bars), flush=True)
+
+
+def moving(a, results):
+    for name, scene, options, times in MOVING:
+        path = find(a.models, scene)
+        if a.only not in name or path is None:
+            if path is None:
+                print(f"{name}: {scene} is not here, left out", file=sys.stderr)
+            continue
+        for time in times:
+            words = [path] + options + ["--time", str(time), "--tracers", "ldc,reference", "--hit", "exact,planar"]
+            result, error = compare(a.program, words)
+            if result is None:
+                print(f"{name} at {time} s: {error}", file=sys.stderr)
+                continue
+            rows_of(f"{name}, {time} s", result, "auto", results, options=options, time=time)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default="build/release/peelray")
     parser.add_argument("--models", default="../shared/models")
     parser.add_argument("--sizes", default="256,512,1024,2048", help="resolutions of the cube")
     parser.add_argument("--only", default="", help="scenes whose name holds this")
+    parser.add_argument("--moving", action="store_true", help="moments of scenes that move instead, --ldc auto")
     parser.add_argument("--stages", default="dragon, mirror;nefertiti, glass;teapots", help="scenes to take apart")
     parser.add_argument("--pictures", help="folder for pictures of the worst pixels")
     parser.add_argument("--out", default="accuracy.json")
     a = parser.parse_args()
     results = []
     print("| scene | triangles | picture | FLIP | HDR-FLIP | SSIM | PSNR dB | pixels off % |\n|---|---:|---|---:|---:|---:|---:|---:|")
-    for name, scene, options in SCENES:
+    if a.moving:
+        moving(a, results)
+    for name, scene, options in [] if a.moving else SCENES:
         path = find(a.models, scene)
         if a.only not in name or path is None:
             if path is None:
@@ -96,20 +147,10 @@ def main():
             if result is None:
                 print(f"{name} at {size}: {error}", file=sys.stderr)
                 continue
-            results.append({"name": name, "ldc": int(size), "options": options, "result": result})
-            for picture in result["pictures"]:
-                d = picture.get("difference")
-                if not d:
-                    continue
-                label = picture["name"] if picture["name"] == "cubemap" else f"{picture['name'][4:]} {size}"
-                bars = {}
-                if picture["name"] == "ldc exact":
-                    bars = EXACT_BARS
-                elif picture["name"] == "ldc planar" and int(size) >= 1024:
-                    bars = {"flip": PLANAR_BAR}
-                print(row(name, result["triangles"], label, d, bars), flush=True)
-    print("\n| scene | " + " | ".join(stage for stage, _ in STAGES) + " |\n|---|" + "---:|" * len(STAGES))
-    for wanted in a.stages.split(";"):
+            rows_of(name, result, size, results, options=options)
+    if not a.moving:
+        print("\n| scene | " + " | ".join(stage for stage, _ in STAGES) + " |\n|---|" + "---:|" * len(STAGES))
+    for wanted in [] if a.moving else a.stages.split(";"):
         for name, scene, options in SCENES:
             path = find(a.models, scene)
             if name != wanted or path is None:

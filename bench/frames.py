@@ -4,8 +4,8 @@
     bench/frames.py --program build/release/peelray --models ../shared/models/meshes --out frames.json
 
 Every scene is mirror-like and stands on a mirroring floor, 1280x1024, one sample per pixel, four bounces, hard shadows; a
-frame builds its cube anew. Times are medians over the repeated frames after a first one. Scenes whose file is missing are left
-out, with a line that says so.
+frame builds all its cubes anew (--keep: only what deforms, which is nothing here). Times are medians over the repeated frames
+after a first one. Scenes whose file is missing are left out, with a line that says so.
 """
 import argparse
 import json
@@ -27,10 +27,12 @@ SCENES = [  # name, file or built-in, options
 ]
 
 
-def render(program, scene, options, repeat, device):
+def render(program, scene, options, repeat, device, rebuild):
     with tempfile.TemporaryDirectory() as folder:
         stats = os.path.join(folder, "stats.json")
         command = [program, "render", scene, "-o", os.path.join(folder, "picture.png"), "--stats", stats, "--repeat", str(repeat)]
+        if rebuild:
+            command.append("--rebuild")
         if device:
             command += ["--device", device]
         done = subprocess.run(command + options, capture_output=True, text=True)
@@ -64,8 +66,9 @@ def main():
     parser.add_argument("--out")
     parser.add_argument("--repeat", type=int, default=20)
     parser.add_argument("--device")
+    parser.add_argument("--keep", action="store_true", help="build the cubes once")
     parser.add_argument("--only", help="scenes whose name contains this")
-    parser.add_argument("--sizes", default="512,1024", help="LDI resolutions")
+    parser.add_argument("--sizes", default="512,1024", help="--ldc of each: auto or numbers")
     parser.add_argument("--hits", default="exact,planar")
     arguments = parser.parse_args()
     rows = []
@@ -80,7 +83,7 @@ def main():
                 continue
         for size in arguments.sizes.split(","):
             for hit in arguments.hits.split(","):
-                stats, error = render(arguments.program, scene, options + ["--ldc", size, "--hit", hit], arguments.repeat, arguments.device)
+                stats, error = render(arguments.program, scene, options + ["--ldc", size, "--hit", hit], arguments.repeat, arguments.device, not arguments.keep)
                 if error is not None:
                     print(f"left out: {name} {size} {hit}: {' '.join(error)}", file=sys.stderr)
                     continue
