@@ -142,6 +142,13 @@ if [ "${2:-}" = readme ]; then
     "$program" render builtin:teapots -o docs/teapots.png --size 960x600 --eye 0.3,2.75,5.6 --look -0.02,0.32,0.1 --fov 36 \
         --exposure 0.2 --spp 256 --effects $effects
     shrink docs/glass.png docs/teapots.png
+    if command -v ffmpeg > /dev/null; then
+        "$program" render builtin:walker -o "$work/w_%03d.png" --frames 0:114 --fps 15 --size 400x300 --spp 64
+        ffmpeg -loglevel error -y -framerate 15 -i "$work/w_%03d.png" -c:v libwebp_anim -quality 70 -compression_level 6 -loop 0 \
+            docs/walker.webp
+    else
+        echo "figures: there is no ffmpeg: docs/walker.webp stays as it is" >&2
+    fi
 fi
 
 shrink docs/frame_bounces_*.png docs/frame_untraced.png docs/frame_cubemap.png docs/scene_*.png docs/turntable.png
