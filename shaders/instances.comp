@@ -63,7 +63,7 @@ void main() {
     const uvec3 tops = grid.dims >> 4u;
     cube.tops = tops.x | tops.y << 10u | tops.z << 20u;
     cube.corner = to_world.linear * grid.origin + to_world.position;
-    cube.first_top = bodies[info.body].first_top;
+    cube.first_cell = bodies[info.body].first_cell;
     cube.origin = grid.origin;
     cube.moved = to_world.linear == mat3(1) && to_world.position == vec3(0) ? 0u : 1u;
     instance_cubes[i] = cube;

@@ -18,14 +18,14 @@
 
 /// Of a triangle of the triangle buffer.
 LDC_SEARCH(ldcBodyOfTriangle, first_triangle)
-/// Of an entry of the table of 16x16x16 cells.
-LDC_SEARCH(ldcBodyOfTop, first_top)
+/// Of an entry of the table of 16x16x16 cells, or of a pixel.
+LDC_SEARCH(ldcBodyOfCell, first_cell)
 /// Of a line of ldc_sat_scan.
 LDC_SEARCH(ldcBodyOfLineX, first_line.x)
 LDC_SEARCH(ldcBodyOfLineY, first_line.y)
 LDC_SEARCH(ldcBodyOfLineZ, first_line.z)
 
-/// The build's first entry of the table of 16x16x16 cells, of this body.
-uint ldcFirstTop(uint body) { return bodies[body].first_top - params.first_top; }
+/// The body's first entry of the table of 16x16x16 cells, or its first pixel, counted from the build's first.
+uint ldcFirstCell(uint body) { return bodies[body].first_cell - params.first_cell; }
 
 #endif

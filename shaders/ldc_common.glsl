@@ -45,10 +45,10 @@ uint ldcAxis(vec3 n) {
 }
 
 /// Is a triangle with normal `n` captured by the LDI of `axis`?
-bool ldcCaptured(vec3 n, uint axis, bool planar) {
+bool ldcCaptured(vec3 n, uint axis, uint sampling) {
     if (axis == ldcAxis(n)) return true;
     const vec3 m = abs(n);
-    return planar && m[axis] >= LDC_OVERLAP * max(m.x, max(m.y, m.z));
+    return sampling == LDC_BAND && m[axis] >= LDC_OVERLAP * max(m.x, max(m.y, m.z));
 }
 
 LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint axis) {
@@ -86,25 +86,31 @@ vec3 ldcReach(LdcTriangle t) {
     return vec3(e0.x + e0.y, e1.x + e1.y, e2.x + e2.y);
 }
 
-/// Does the triangle have a sample in this pixel? Conservative (`exact`): it touches the pixel's square; `planar`: it covers
-/// the pixel's centre.
-bool ldcCovers(LdcTriangle t, vec3 reach, vec2 centre, bool planar) {
-    const float h = planar ? LDC_SLACK : 0.5 + LDC_SLACK;
+/// Does the triangle have a sample in this pixel? Conservative: it touches the pixel's square; else it covers the pixel's
+/// centre.
+bool ldcCovers(LdcTriangle t, vec3 reach, vec2 centre, uint sampling) {
+    const float h = sampling == LDC_CONSERVATIVE ? 0.5 + LDC_SLACK : LDC_SLACK;
     return all(greaterThanEqual(ldcEdges(t, centre), -h * reach));
 }
 
-/// Voxels [lo, hi] of the pixel's column that the sample's patch touches, before clamping to the LDI's depth.
-ivec2 ldcDepthRange(LdcTriangle t, vec2 centre, bool planar) {
-    const float w = t.a.z + dot(t.slope, centre - t.a.xy);
-    const float extent = (planar ? PEELRAY_FOOTPRINT : 0.5) * (abs(t.slope.x) + abs(t.slope.y));
+/// The plane's depth at the pixel's centre.
+float ldcDepth(LdcTriangle t, vec2 centre) { return t.a.z + dot(t.slope, centre - t.a.xy); }
+
+/// Voxels [lo, hi] of the pixel's column that the sample's patch touches, before clamping to the LDI's depth. `tolerance`: in
+/// voxels, of LDC_CENTRE, whose patch is as high as that.
+ivec2 ldcDepthRange(LdcTriangle t, vec2 centre, uint sampling, float tolerance) {
+    const float w = ldcDepth(t, centre);
+    const float half_width = sampling == LDC_CONSERVATIVE ? 0.5 : PEELRAY_FOOTPRINT;
+    const float extent = sampling == LDC_CENTRE ? tolerance : half_width * (abs(t.slope.x) + abs(t.slope.y));
     vec2 range = vec2(w - extent, w + extent);
-    if (!planar) range = vec2(max(range.x, min(t.a.z, min(t.b.z, t.c.z))), min(range.y, max(t.a.z, max(t.b.z, t.c.z))));
+    if (sampling == LDC_CONSERVATIVE)
+        range = vec2(max(range.x, min(t.a.z, min(t.b.z, t.c.z))), min(range.y, max(t.a.z, max(t.b.z, t.c.z))));
     return ivec2(floor(range + vec2(-2.0 * LDC_SLACK, 2.0 * LDC_SLACK)));
 }
 
 /// Did the stages before the samples fit? Otherwise they are all redone.
 #define LDC_FITS(counts) \
-    (counts.tops <= params.top_capacity && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
+    (counts.cells <= params.cell_capacity && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
 
 /// Where a list starts among the build's samples, from its voxel's entry.
 #define ldcListStart(entry) ((entry & 0x7fffffffu) - params.first_sample)
@@ -127,6 +133,13 @@ uint ldcVoxelInNode(uvec3 voxel) {
     const uvec3 n = voxel & 3u;
     return n.z * 16u + n.y * 4u + n.x;
 }
+/// A pixel of a body's three LDIs, which lie one behind the other.
+uint ldcPixelOfBody(uvec2 pixel, uint axis, uvec3 dims) {
+    const uint before = axis == 0u ? 0u : dims.y * dims.z + (axis == 1u ? 0u : dims.z * dims.x);
+    return before + peelrayPixelIndex(pixel, uint(ldcToLdi(vec3(dims), axis).x));
+}
+/// A depth as a half float of [0, 1] holds it, over an LDI of so many voxels: the paper's 16-bit depth.
+float ldcRoundDepth(float w, float voxels) { return unpackHalf2x16(packHalf2x16(vec2(w / voxels, 0.0))).x * voxels; }
 uvec3 ldcCell64(uint index) { return uvec3(index & 3u, (index >> 2u) & 3u, index >> 4u); }
 
 // --- 4x4x4 occupancy masks: bit z*16 + y*4 + x of (low word, high word) ---
@@ -167,12 +180,12 @@ uint ldcGrowBox(uvec2 mask, uint index) {
 }
 
 /// The sample of a triangle in a voxel, as the traversal reads it (see peelrayTrace); the `last` bit is still 0.
-uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, bool planar) {
+uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling) {
     const vec3 corner = ldcToLdi(vec3(voxel), axis);
     const vec2 centre = corner.xy + 0.5;
-    const float w = t.a.z + dot(t.slope, centre - t.a.xy) - corner.z;
+    const float w = ldcDepth(t, centre) - corner.z;
     uint coverage = 0u;
-    if (!planar) {
+    if (sampling == LDC_CONSERVATIVE) {
         // Conservative: a cell of the 4x4 grid counts when the triangle comes within 0.03 pixels of it, which is more than
         // the traversal's position slack.
         const vec3 reach = ldcReach(t) * (0.125 + 0.03);

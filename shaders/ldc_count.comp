@@ -16,8 +16,8 @@ void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= count) return;
     const LdcFragment f = fragments[i];
-    const uint node = node_table[top_table[params.first_top + f.top].y * 64u + (f.local >> 6u)] & 0x7fffffffu;
+    const uint node = node_table[top_table[params.first_cell + f.cell].y * 64u + (f.local >> 6u)] & 0x7fffffffu;
     const uint voxel = (node - params.first_node) * 64u + (f.local & 63u);
-    fragments[i].top = voxel;
+    fragments[i].cell = voxel;
     fragments[i].local = atomicAdd(voxel_counts[voxel], 1u);
 }

@@ -28,25 +28,6 @@ uint ldcReserve(uint count) {
     return position;
 }
 
-/// Fragments of the triangle in the pixel: counted if `write` is false, else written from `position` on. Returns how many.
-/// `first_top`: the build's first 16x16x16 cell of the body, whose grid has `dims` voxels.
-uint ldcEmitPixel(LdcTriangle t, ivec2 pixel, uint id, uvec3 dims, uint first_top, bool write, uint position) {
-    const bool planar = params.planar != 0u;
-    const uint axis = id & 3u;
-    const uint depth = dims[axis];
-    ivec2 range = ldcDepthRange(t, vec2(pixel) + 0.5, planar);
-    range = clamp(range, ivec2(0), ivec2(int(depth) - 1));
-    if (write)
-        for (int w = range.x; w <= range.y; w++) {
-            const uint index = position + uint(w - range.x);
-            const uvec3 voxel = ldcFromLdi(uvec3(pixel, w), axis);
-            const uint top = first_top + ldcTopIndex(voxel, dims), node = ldcNodeInTop(voxel);
-            const uint word = top * 2u + (node >> 5u), bit = 1u << (node & 31u);
-            // Most bits are set already: looking first is cheaper than an atomic.
-            if ((node_masks[word] & bit) == 0u) atomicOr(node_masks[word], bit);
-            if (index < params.fragment_capacity) fragments[index] = LdcFragment(top, id, node << 6u | ldcVoxelInNode(voxel));
-        }
-    return uint(range.y - range.x + 1);
-}
+#include "ldc_pixel_emit.glsl"
 
 #endif

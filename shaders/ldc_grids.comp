@@ -15,7 +15,7 @@ shared uvec4 partial[64];
 
 void main() {
     const uint lane = gl_LocalInvocationIndex;
-    uvec4 carry = uvec4(0);  // lines along x, y, z; cells
+    uvec4 carry = uvec4(0);  // lines along x, y, z; cells or pixels
     for (uint base = 0u; base < params.bodies; base += 64u) {
         const uint body = params.first_body + base + lane;
         const bool valid = base + lane < params.bodies;
@@ -24,6 +24,7 @@ void main() {
             const CubeGrid grid = ldcMakeGrid(orderedFloats(body_lower[body]), orderedFloats(body_upper[body]), bodies[body].resolution);
             const uvec3 tops = grid.dims >> 4u;
             own = uvec4(tops.y * tops.z, tops.z * tops.x, tops.x * tops.y, tops.x * tops.y * tops.z);
+            if (params.by_pixel != 0u) own.w = 256u * (own.x + own.y + own.z);
             bodies[body].grid = grid;
         }
         partial[lane] = own;
@@ -37,13 +38,14 @@ void main() {
         if (valid) {
             const uvec4 before = carry + partial[lane] - own;
             bodies[body].first_line = before.xyz;
-            bodies[body].first_top = params.first_top + before.w;
+            bodies[body].first_cell = params.first_cell + before.w;
         }
         carry += partial[63];
         barrier();
     }
     if (lane == 0u) {
         counters[0].lines = carry.xyz;
-        counters[0].tops = carry.w;
+        // One more offset ends the last pixel's list; whole tiles of tiles, so that what follows lies as this does.
+        counters[0].cells = carry.w + (params.by_pixel != 0u ? 256u : 0u);
     }
 }

@@ -10,15 +10,15 @@ BUFFER(writeonly, 1, uvec3, groups)
 uvec3 rows(uint count) { return uvec3(min(count, DISPATCH_ROW), (count + DISPATCH_ROW - 1u) / DISPATCH_ROW, 1u); }
 
 void main() {
-    const bool fits = counters[0].tops <= params.top_capacity;
-    const uint tops = fits ? counters[0].tops : 0u;
+    const bool fits = counters[0].cells <= params.cell_capacity;
+    const uint cells = fits ? counters[0].cells : 0u;
     groups[LDC_GROUPS_BIG] = rows(min(counters[0].big, params.big_capacity));
     groups[LDC_GROUPS_TILES] = rows(min(counters[0].tiles, params.tile_capacity));
     groups[LDC_GROUPS_OCCUPIED] = rows(min(counters[0].occupied, params.occupied_capacity));
     groups[LDC_GROUPS_NODES] = rows(min(counters[0].nodes, params.node_capacity));
     groups[LDC_GROUPS_FRAGMENTS] = rows((min(counters[0].fragments, params.fragment_capacity) + 127u) / 128u);
     groups[LDC_GROUPS_LONG] = rows(min(counters[0].long_lists, params.long_capacity));
-    groups[LDC_GROUPS_TOPS] = rows((tops + 255u) / 256u);
-    groups[LDC_GROUPS_TOPS_BY_64] = rows((tops + 63u) / 64u);
+    groups[LDC_GROUPS_CELLS] = rows((cells + 255u) / 256u);
+    groups[LDC_GROUPS_CELLS_BY_64] = rows((cells + 63u) / 64u);
     for (uint axis = 0u; axis < 3u; axis++) groups[LDC_GROUPS_LINES + axis] = rows(fits ? (counters[0].lines[axis] + 63u) / 64u : 0u);
 }

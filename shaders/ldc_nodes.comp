@@ -22,8 +22,8 @@ void main() {
     if (ldcMaskBit(mask, lane)) {
         const uint node = sums[top].y + ldcMaskRank(mask, lane);
         entry = 0x80000000u | (params.first_node + node);
-        const uint body = ldcBodyOfTop(params.first_top + top);
-        const uvec3 cell = ldcTopCell(top - ldcFirstTop(body), bodies[body].grid.dims) * 4u + ldcCell64(lane);
+        const uint body = ldcBodyOfCell(params.first_cell + top);
+        const uvec3 cell = ldcTopCell(top - ldcFirstCell(body), bodies[body].grid.dims) * 4u + ldcCell64(lane);
         if (node < params.node_capacity) node_cells[node] = uvec2(cell.x | cell.y << 10u | cell.z << 20u, body);
     } else {
         entry = ldcGrowBox(mask, lane);

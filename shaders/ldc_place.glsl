@@ -6,7 +6,7 @@ void placeSample(uint at, uint id, uint voxel, bool last) {
     const uvec3 corners = triangles[id >> 2u];
     const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
     const LdcTriangle t = ldcProject(grid, a, b, c, ldcNormal(a, b, c, grid.inv_voxel), id & 3u);
-    uvec2 data = ldcPackSample(t, position, id & 3u, params.planar != 0u);
+    uvec2 data = ldcPackSample(t, position, id & 3u, params.sampling);
     if (last) data.y |= 1u << 30u;
     samples[params.first_sample + at] = data;
     sample_ids[params.first_sample + at] = id;

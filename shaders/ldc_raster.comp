@@ -12,15 +12,13 @@ BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(writeonly, 5, uint, big_triangles)
 BUFFER(readonly, 6, LdcBody, bodies)
 #include "bounds.glsl"
-#include "ldc_bodies.glsl"
 #include "ldc_emit.glsl"
 
 void main() {
     const uint id = params.first_triangle + GLOBAL_INDEX;
-    const bool planar = params.planar != 0u;
-    bool valid = GLOBAL_INDEX < params.triangles && counters[0].tops <= params.top_capacity;
-    const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body, first_top = ldcFirstTop(body);
-    const CubeGrid grid = bodies[body].grid;
+    bool valid = GLOBAL_INDEX < params.triangles && counters[0].cells <= params.cell_capacity;
+    const LdcPlace place = ldcPlaceOf(valid ? ldcBodyOfTriangle(id) : params.first_body);
+    const CubeGrid grid = place.grid;
     vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);
     if (valid) {
         const uvec3 corners = triangles[id];
@@ -39,7 +37,7 @@ void main() {
         }
     }
     for (uint axis = 0u; axis < 3u; axis++) {
-        bool captured = valid && ldcCaptured(normal, axis, planar);
+        bool captured = valid && ldcCaptured(normal, axis, params.sampling);
         LdcTriangle t;
         ivec2 lo = ivec2(0), hi = ivec2(-1);
         if (captured) {
@@ -58,11 +56,11 @@ void main() {
         if (captured)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, grid.dims, first_top, false, 0u);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling)) count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, false, 0u);
         uint position = ldcReserve(count);
         if (count != 0u)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, planar)) position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, grid.dims, first_top, true, position);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling)) position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, true, position);
     }
 }

@@ -11,18 +11,16 @@ BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(readonly, 5, uvec2, tiles)
 BUFFER(readonly, 6, LdcBody, bodies)
-#include "ldc_bodies.glsl"
 #include "ldc_emit.glsl"
 #include "ldc_big.glsl"
 
 void main() {
-    const bool planar = params.planar != 0u;
     const uint tile_count = min(counters[0].tiles, params.tile_capacity);
     if (GROUP_INDEX >= tile_count) return;
     const uvec2 tile = tiles[GROUP_INDEX];
     const uint id = tile.x;
-    const uint body = ldcBodyOfTriangle(id >> 2u), first_top = ldcFirstTop(body);
-    const CubeGrid grid = bodies[body].grid;
+    const LdcPlace place = ldcPlaceOf(ldcBodyOfTriangle(id >> 2u));
+    const CubeGrid grid = place.grid;
     const LdcTriangle t = bigTriangle(grid, id);
     const vec3 reach = ldcReach(t);
     ivec2 lo, hi;
@@ -32,14 +30,14 @@ void main() {
     for (uint k = 0u; k < 4u; k++) {
         const uint j = k * 64u + gl_LocalInvocationIndex;
         const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
-        if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, planar)) continue;
+        if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, params.sampling)) continue;
         covered |= 1u << k;
-        count += ldcEmitPixel(t, pixel, id, grid.dims, first_top, false, 0u);
+        count += ldcEmitPixel(t, pixel, id, place, false, 0u);
     }
     uint position = ldcReserve(count);
     for (uint k = 0u; k < 4u; k++) {
         if ((covered >> k & 1u) == 0u) continue;
         const uint j = k * 64u + gl_LocalInvocationIndex;
-        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, grid.dims, first_top, true, position);
+        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, place, true, position);
     }
 }

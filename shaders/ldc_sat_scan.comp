@@ -18,7 +18,7 @@ void main() {
     const uvec3 tops = bodies[body].grid.dims >> 4u;
     const uvec3 strides = uvec3(1u, tops.x, tops.x * tops.y);
     const uint other1 = (axis + 1u) % 3u, other2 = (axis + 2u) % 3u;
-    const uint first = ldcFirstTop(body) + (line % tops[other1]) * strides[other1] + (line / tops[other1]) * strides[other2];
+    const uint first = ldcFirstCell(body) + (line % tops[other1]) * strides[other1] + (line / tops[other1]) * strides[other2];
     uint sum = 0u;
     for (uint i = 0u; i < tops[axis]; i++) {
         const uint at = first + i * strides[axis];

@@ -13,5 +13,5 @@ void main() {
     const uint count = min(counters[0].fragments, params.fragment_capacity);
     const uint i = GLOBAL_INDEX;
     if (i >= count) return;
-    unsorted_ids[ldcListStart(voxel_table[params.first_node * 64u + fragments[i].top]) + fragments[i].local] = fragments[i].id;
+    unsorted_ids[ldcListStart(voxel_table[params.first_node * 64u + fragments[i].cell]) + fragments[i].local] = fragments[i].id;
 }

@@ -22,7 +22,7 @@ void main() {
     const uint count = min(counters[0].fragments, params.fragment_capacity);
     const uint i = GLOBAL_INDEX;
     if (i >= count) return;
-    const uint voxel = fragments[i].top, id = fragments[i].id;
+    const uint voxel = fragments[i].cell, id = fragments[i].id;
     const uint length = voxel_counts[voxel];
     if (length > LDC_LONG_LIST) return;
     const uint start = ldcListStart(voxel_table[params.first_node * 64u + voxel]);

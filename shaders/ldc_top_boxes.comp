@@ -27,9 +27,9 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i >= counters[0].tops || node_masks[i] != uvec2(0)) return;
-    const uint body = ldcBodyOfTop(params.first_top + i);
-    first_top = ldcFirstTop(body);
+    if (i >= counters[0].cells || node_masks[i] != uvec2(0)) return;
+    const uint body = ldcBodyOfCell(params.first_cell + i);
+    first_top = ldcFirstCell(body);
     const ivec3 tops = ivec3(bodies[body].grid.dims >> 4u);
     ivec3 lo = ivec3(ldcTopCell(i - first_top, bodies[body].grid.dims)), hi = lo;
     int steps[6] = int[](1, 1, 1, 1, 1, 1);
@@ -60,5 +60,5 @@ void main() {
         if (!grown) break;
     }
     const uvec3 l = uvec3(lo), h = uvec3(hi);
-    top_table[params.first_top + i] = uvec2(l.x | l.y << 10u | l.z << 20u, h.x | h.y << 10u | h.z << 20u);
+    top_table[params.first_cell + i] = uvec2(l.x | l.y << 10u | l.z << 20u, h.x | h.y << 10u | h.z << 20u);
 }

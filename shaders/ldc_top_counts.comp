@@ -9,7 +9,7 @@ BUFFER(readonly, 2, LdcCounters, counters)
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i >= min(counters[0].tops, params.top_capacity)) return;
+    if (i >= min(counters[0].cells, params.cell_capacity)) return;
     const uint nodes = ldcMaskCount(node_masks[i]);
     sums[i] = uvec2(nodes != 0u ? 1u : 0u, nodes);
 }

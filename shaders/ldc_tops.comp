@@ -11,12 +11,12 @@ BUFFER(, 4, LdcCounters, counters)
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    const uint count = counters[0].tops;
+    const uint count = counters[0].cells;
     if (i >= count) return;
     const uint nodes = ldcMaskCount(node_masks[i]);
     const uvec2 before = sums[i];
     if (nodes != 0u) {
-        top_table[params.first_top + i] = uvec2(0x80000000u, params.first_occupied + before.x);
+        top_table[params.first_cell + i] = uvec2(0x80000000u, params.first_occupied + before.x);
         if (before.x < params.occupied_capacity) top_cells[before.x] = i;
     }
     if (i == count - 1u) {

@@ -25,10 +25,11 @@ struct LdcBody {
     uint first_triangle;  ///< of the triangle buffer
     uint triangles;
     uint resolution;      ///< voxels along the longest side, a multiple of 16
-    uint first_top;       ///< in the table of 16x16x16 cells; written by ldc_grids
+    uint first_cell;      ///< in the table of 16x16x16 cells, or its first pixel; written by ldc_grids
     uvec3 first_line;     ///< of ldc_sat_scan along x, y, z, counted over the bodies of a build; written by ldc_grids
+    float tolerance;      ///< of `tolerance` hits, in the units of the body's space
 };
-SHARED_SIZE(LdcBody, 60);
+SHARED_SIZE(LdcBody, 64);
 
 /// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the bodies
 /// that were built before.
@@ -37,12 +38,13 @@ struct LdcParams {
     uint bodies;
     uint first_triangle;      ///< of the first body
     uint triangles;           ///< of all bodies of the build
-    uint first_top;           ///< entry of the table of 16x16x16 cells
+    uint first_cell;          ///< entry of the table of 16x16x16 cells, or pixel
     uint first_occupied;      ///< number of an occupied 16x16x16 cell
     uint first_node;          ///< number of an occupied 4x4x4 node
     uint first_sample;
-    uint planar;              ///< 1: pixel-centre samples with the overlap band; 0: conservative
-    uint top_capacity;        ///< 16x16x16 cells that have room
+    uint sampling;            ///< LDC_CONSERVATIVE, LDC_BAND or LDC_CENTRE
+    uint by_pixel;            ///< 1: fragments for the by-pixel order; 2: with depths of 16 bits
+    uint cell_capacity;       ///< 16x16x16 cells, or pixels, that have room
     uint occupied_capacity;   ///< of them occupied
     uint node_capacity;       ///< occupied 4x4x4 nodes that have room
     uint fragment_capacity;
@@ -50,20 +52,25 @@ struct LdcParams {
     uint tile_capacity;       ///< entries of the queue of their 16x16-pixel tiles
     uint long_capacity;       ///< entries of the queue of long lists
     uint axis;                ///< of ldc_sat_scan
+    uint block;               ///< of ldc_ranges: pixels of a block along u, and along v << 16
+    uint level;               ///< of ldc_ranges_up
 };
-SHARED_SIZE(LdcParams, 68);
+SHARED_SIZE(LdcParams, 80);
+#define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
+#define LDC_BAND 1u          // pixel centres, with the overlap band: `planar`
+#define LDC_CENTRE 2u        // pixel centres, each triangle in one LDI, as in the paper: `tolerance`
 
 /// Counted on the GPU while building; whatever exceeds a capacity makes the host grow it and build again.
 struct LdcCounters {
     uint fragments;   ///< samples
     uint big;
     uint tiles;
-    uint tops;        ///< 16x16x16 cells
+    uint cells;       ///< 16x16x16 cells, or pixels
     uint occupied;    ///< of them occupied
     uint nodes;       ///< occupied 4x4x4 nodes
     uint voxels;      ///< occupied voxels
     uint long_lists;
-    uint longest;     ///< samples of the longest list
+    uint longest;     ///< samples of the longest list; by pixel: the depth complexity
     uint degenerate;  ///< triangles without area: dropped
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
     uint wrapped;     ///< 1: more fragments than 32 bits count
@@ -78,16 +85,16 @@ SHARED_SIZE(LdcCounters, 60);
 #define LDC_GROUPS_NODES 3u
 #define LDC_GROUPS_FRAGMENTS 4u
 #define LDC_GROUPS_LONG 5u
-#define LDC_GROUPS_TOPS 6u        // 256 to a group
-#define LDC_GROUPS_TOPS_BY_64 7u
+#define LDC_GROUPS_CELLS 6u       // 256 to a group
+#define LDC_GROUPS_CELLS_BY_64 7u
 #define LDC_GROUPS_LINES 8u       // three, of 64
 #define LDC_GROUPS 11u
 
-/// One triangle's crossing of one voxel, before it is sorted into its list.
+/// One triangle's crossing of one voxel or pixel, before it is sorted into its list.
 struct LdcFragment {
-    uint top;    ///< of the build's 16^3 cells; after ldc_count: index of the voxel's entry, counted from the build's first
+    uint cell;   ///< of the build's 16^3 cells; after ldc_count: index of the voxel's entry, counted from the build's first. Or pixel
     uint id;     ///< triangle * 4 + axis
-    uint local;  ///< voxel inside the 16^3 cell (12 bits: node 6, voxel 6); after ldc_count: slot in its list
+    uint local;  ///< voxel inside the 16^3 cell (12 bits: node 6, voxel 6); after ldc_count: slot in its list. Or depth: bits of a float
 };
 SHARED_SIZE(LdcFragment, 12);
 

@@ -29,7 +29,7 @@ struct PeelrayInstance {
     vec3 z;
     uint tops;        ///< the grid's dims in 16 voxels: 10 bits each
     vec3 corner;
-    uint first_top;   ///< the cube's first entry in the table of 16x16x16-voxel cells
+    uint first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel order)
     vec3 origin;      ///< as in CubeGrid
     uint moved;       ///< 0: M is the identity and corner the grid's origin
 };

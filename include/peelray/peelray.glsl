@@ -121,7 +121,7 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
             // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
             lo = hi = cell;
             const uvec3 top = uvec3(cell) >> 4u;
-            const uvec2 top_entry = PEELRAY_TOP(place.first_top + (top.z * tops.y + top.y) * tops.x + top.x);
+            const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
             if ((top_entry.x >> 31u) == 0u) {
                 lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
                 hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;

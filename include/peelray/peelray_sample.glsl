@@ -11,4 +11,14 @@ const float PEELRAY_SLOPE_RANGE = 1.25;
 /// Half-width of a sample's footprint for `planar` hits, in pixels.
 const float PEELRAY_FOOTPRINT = 0.7;
 
+/// Place of a pixel in an LDI of the by-pixel order, whose rows have `width` pixels (a multiple of 16): 8x8 tiles, for rays walk
+/// both ways.
+uint peelrayPixelIndex(uvec2 pixel, uint width) {
+    const uvec2 tile = pixel >> 3u, inside = pixel & 7u;
+    return ((tile.y * (width >> 3u) + tile.x) << 6u) + (inside.y << 3u) + inside.x;
+}
+
+/// Cells along u and v of a level of an LDI's min/max pyramid: each covers 2^level x 2^level pixels.
+uvec2 peelrayLevelSize(uvec2 pixels, uint level) { return (pixels + (1u << level) - 1u) >> level; }
+
 #endif

@@ -45,14 +45,18 @@ CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t reso
     return ldcMakeGrid(lower, upper, round_resolution(resolution));
 }
 
-Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling)
-    : device_(device), bodies_(std::move(bodies)), sampling_(sampling) {
+Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, const CubeLayout& layout)
+    : device_(device), bodies_(std::move(bodies)), sampling_(sampling), layout_(layout) {
     assert(!bodies_.empty());
+    if (layout.block.x < 2 || layout.block.y < 2 || layout.block.x > 32 || layout.block.y > 32)
+        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", layout.block.x,
+             layout.block.y);
     Commands commands(device);
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
     for (const CubeBody& body : bodies_) {
-        table.push_back({{}, body.first_triangle, body.triangles, round_resolution(body.resolution), 0, {}});
+        table.push_back(
+            {{}, body.first_triangle, body.triangles, round_resolution(body.resolution), 0, {}, body.tolerance});
         lower.push_back(ordered_bits(body.lower));
         upper.push_back(ordered_bits(body.upper));
     }
@@ -69,11 +73,22 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
         fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
              size.nodes, size.samples);
-    grow(device_, commands, top_table, "the cubes' top table", size.tops * 8, kept.tops * 8);
-    grow(device_, commands, node_table, "the cubes' nodes", size.occupied * 256, kept.occupied * 256);
-    grow(device_, commands, voxel_table, "the cubes' voxels", size.nodes * 256, kept.nodes * 256);
     grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
     grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
+    if (layout_.by_pixel()) {
+        grow(device_, commands, pixel_offsets, "the cubes' pixels", size.cells * 4, kept.cells * 4);
+        grow(device_, commands, pixel_ranges, "the cubes' ranges of depth", size.cells * 4, kept.cells * 4);
+        return;
+    }
+    grow(device_, commands, top_table, "the cubes' top table", size.cells * 8, kept.cells * 8);
+    grow(device_, commands, node_table, "the cubes' nodes", size.occupied * 256, kept.occupied * 256);
+    grow(device_, commands, voxel_table, "the cubes' voxels", size.nodes * 256, kept.nodes * 256);
+}
+
+uint32_t Cubes::pyramid_levels() const {
+    uint32_t largest = 16;
+    for (const CubeBody& body : bodies_) largest = std::max(largest, round_resolution(body.resolution));
+    return uint32_t(std::bit_width(largest - 1));
 }
 
 std::vector<LdcBody> Cubes::download_bodies(Commands& commands) const {
@@ -83,7 +98,7 @@ std::vector<LdcBody> Cubes::download_bodies(Commands& commands) const {
 uint64_t Cubes::held_bytes() const {
     uint64_t bytes = 0;
     for (const Buffer* buffer : {&body_table, &body_lower, &body_upper, &top_table, &node_table, &voxel_table, &samples,
-                                 &sample_ids})
+                                 &sample_ids, &pixel_offsets, &pixel_ranges})
         bytes += buffer->bytes();
     return bytes;
 }

@@ -1,4 +1,5 @@
-// Layered depth cubes on the GPU, one per body, in the by-voxel order (docs/data.md draws the structure).
+// Layered depth cubes on the GPU, one per body, in the order that a traversal reads (docs/data.md draws the
+// structures).
 #pragma once
 
 #include <cstdint>
@@ -27,6 +28,7 @@ struct CubeBody {
     uint32_t first_triangle = 0, triangles = 0;
     uint32_t resolution = 512;     ///< voxels along the longest side: 16 to 2048, rounded up to a multiple of 16
     glm::vec3 lower{0}, upper{0};  ///< bounds; of bodies that deform: as they are now, for a guess of what they need
+    float tolerance = 0;           ///< of `tolerance` hits, in the units of the body's space
 };
 
 /// The next multiple of 16. Throws Error unless 16 ≤ resolution ≤ 2048.
@@ -35,7 +37,40 @@ uint32_t round_resolution(uint32_t resolution);
 /// How a cube is sampled.
 enum class Sampling : uint8_t {
     conservative,  ///< every pixel that a triangle touches: for `exact` hits
-    centre,        ///< pixel centres, with the overlap band: for `planar` hits
+    band,          ///< pixel centres, with the overlap band: for `planar` hits
+    centre,        ///< pixel centres, each triangle in one LDI: for `tolerance` hits (the paper, section 1.2.1)
+};
+
+/// How rays walk through a cube, which decides the order of its samples.
+enum class Traversal : uint8_t {
+    voxel,      ///< by voxel: all three LDIs at once, front to back
+    two_level,  ///< by pixel: one LDI after the other, over blocks of pixels (the paper, section 1.4)
+    mipmap,     ///< by pixel: the same over a full min/max pyramid
+};
+
+/// Who rasterises: all make the same cube.
+enum class BuilderKind : uint8_t {
+    compute,  ///< compute shaders
+    abuffer,  ///< the graphics pipeline, one pass: fragments append themselves
+    peel,     ///< the graphics pipeline, a pass per layer: depth peeling (the paper, section 1.2)
+};
+
+/// How a triangle gets into the LDI that its normal picks, in the graphics pipeline.
+enum class Routing : uint8_t {
+    geometry,  ///< a geometry shader sends it there: one submission of the geometry for all three (the paper)
+    draws,     ///< each LDI is drawn on its own; vertices of triangles that are not its own are thrown away
+};
+
+/// How cubes are built and stored.
+struct CubeLayout {
+    Traversal traversal = Traversal::voxel;
+    glm::uvec2 block{8};      ///< pixels of a block of two_level along u and v: 2 to 32
+    bool half_depth = false;  ///< by pixel: depths rounded to half floats, as the paper stores them
+    BuilderKind builder = BuilderKind::compute;
+    Routing routing = Routing::geometry;  ///< of abuffer and peel
+
+    bool by_pixel() const { return traversal != Traversal::voxel; }
+    bool operator==(const CubeLayout&) const = default;
 };
 
 /// The grid of N voxels along the longest side of the box [lower, upper] grown by one voxel on each side; voxels are
@@ -44,26 +79,30 @@ CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t reso
 
 /// How much of the cubes' tables some bodies take.
 struct TableSize {
-    uint64_t tops = 0;      ///< 16³-voxel cells
+    uint64_t cells = 0;     ///< 16³-voxel cells; by pixel: pixels
     uint64_t occupied = 0;  ///< of them occupied
     uint64_t nodes = 0;     ///< occupied 4³-voxel nodes
     uint64_t samples = 0;
 
-    uint64_t bytes() const { return tops * 8 + (occupied + nodes) * 256 + samples * 12; }
+    /// 8 per cell, or per pixel an offset and half a range.
+    uint64_t bytes() const { return cells * 8 + (occupied + nodes) * 256 + samples * 12; }
     TableSize operator+(const TableSize& b) const {
-        return {tops + b.tops, occupied + b.occupied, nodes + b.nodes, samples + b.samples};
+        return {cells + b.cells, occupied + b.occupied, nodes + b.nodes, samples + b.samples};
     }
 };
 
-/// The by-voxel order of all bodies: what the `voxel` traversal reads. Builders fill it, a range of bodies at a time.
+/// The samples of all bodies in one order. Builders fill it, a range of bodies at a time.
 class Cubes {
   public:
     /// `bodies` in ascending order of their triangles, without gaps; at least one. Throws Error for a resolution out of
     /// range.
-    Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling);
+    Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, const CubeLayout& layout = {});
 
     const std::vector<CubeBody>& bodies() const { return bodies_; }
     Sampling sampling() const { return sampling_; }
+    const CubeLayout& layout() const { return layout_; }
+    /// Levels of the min/max pyramid over the pixels of the largest LDI.
+    uint32_t pyramid_levels() const;
 
     /// Makes room for `size` in all; what the first `kept` entries of each table hold stays.
     void reserve(Commands& commands, const TableSize& size, const TableSize& kept);
@@ -76,16 +115,20 @@ class Cubes {
 
     Buffer body_table;              ///< LdcBody each
     Buffer body_lower, body_upper;  ///< bounds: uvec3 each, as orderedBits of shaders/bounds.glsl
-    Buffer top_table;    ///< uvec2 per 16³ cell: bit 31 of x: occupied, y = its number; else an empty box in 16³ cells
-    Buffer node_table;   ///< uint32, 64 per occupied 16³ cell: bit 31: occupied node's number; else an empty box
+    Buffer top_table;   ///< uvec2 per 16³ cell: bit 31 of x: occupied, y = its number; else an empty box in 16³ cells
+    Buffer node_table;  ///< uint32, 64 per occupied 16³ cell: bit 31: occupied node's number; else an empty box
     Buffer voxel_table;  ///< uint32, 64 per occupied node: bit 31: first sample of a list; else an empty box in voxels
-    Buffer samples;      ///< uvec2 each: depth, coverage, slopes, axis, last-of-list (ldcPackSample)
-    Buffer sample_ids;   ///< uint32 each: triangle · 4 + axis
+    Buffer pixel_offsets;  ///< by pixel: uint32 per pixel of the three LDIs, and one more: where its samples begin
+    Buffer pixel_ranges;   ///< by pixel: vec2 per block, or per cell of the pyramid: least and greatest depth of a hit
+    Buffer
+        samples;  ///< uvec2 each: depth, coverage, slopes, axis, last-of-list (ldcPackSample); by pixel: depth, slopes
+    Buffer sample_ids;  ///< uint32 each: triangle · 4 + axis
 
   private:
     Device& device_;
     std::vector<CubeBody> bodies_;
     Sampling sampling_;
+    CubeLayout layout_;
 };
 
 }  // namespace peelray

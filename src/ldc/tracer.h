@@ -8,7 +8,11 @@
 
 namespace peelray {
 
-enum class HitTest : uint8_t { exact, planar };
+enum class HitTest : uint8_t {
+    exact,      ///< the triangles themselves
+    planar,     ///< the samples' planes, each inside its footprint
+    tolerance,  ///< the samples' depths, within a distance (the paper, section 3)
+};
 
 /// What rays are traced in: all of a scene's cubes, placed in the world.
 struct TracedScene {
@@ -51,7 +55,15 @@ void record_file_hits(Commands& commands, Device& device, const Instances& insta
 
 /// The sampling that a hit test needs.
 inline Sampling sampling_for(HitTest test) {
-    return test == HitTest::exact ? Sampling::conservative : Sampling::centre;
+    switch (test) {
+        case HitTest::exact:
+            return Sampling::conservative;
+        case HitTest::planar:
+            return Sampling::band;
+        case HitTest::tolerance:
+            return Sampling::centre;
+    }
+    return Sampling::conservative;
 }
 
 }  // namespace peelray

@@ -8,8 +8,8 @@ namespace {
 
 /// `auto` of planar hits, which are as good as their voxels are fine.
 constexpr float kPlanarResolution = 1024;
-/// Share of the resolution that every body gets, however small it is beside the largest; of more bodies than a few only as
-/// much that its voxels are at most so many times as fine.
+/// Share of the resolution that every body gets, however small it is beside the largest; of more bodies than a few only
+/// as much that its voxels are at most so many times as fine.
 constexpr float kLeast = 0.25f, kFinest = 4;
 constexpr size_t kFewBodies = 16;
 
@@ -37,7 +37,7 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
     sum.fragments += b.fragments;
     sum.big += b.big;
     sum.tiles += b.tiles;
-    sum.tops += b.tops;
+    sum.cells += b.cells;
     sum.occupied += b.occupied;
     sum.nodes += b.nodes;
     sum.voxels += b.voxels;
@@ -81,7 +81,7 @@ bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangle
     if (fixed_built_) return false;
     if (fixed_ > 0) {
         // Its scratch memory goes when the work is done.
-        ComputeBuilder builder(device_, commands, cubes_, 0, fixed_);
+        CubeBuilder builder(device_, commands, cubes_, 0, fixed_);
         builder.build(commands, triangles);
         fixed_counts_ = builder.counts();
         fixed_size_ = builder.size();
@@ -89,7 +89,7 @@ bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangle
     }
     const auto all = uint32_t(cubes_.bodies().size());
     if (fixed_ < all)
-        builder_ = std::make_unique<ComputeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_);
+        builder_ = std::make_unique<CubeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_);
     fixed_built_ = true;
     return fixed_ > 0;
 }
@@ -106,8 +106,10 @@ SceneCubes::Stats SceneCubes::stats() const {
     Stats stats;
     stats.bodies = uint32_t(cubes_.bodies().size());
     stats.fixed = fixed_;
-    if (choice_.ldc != 0) stats.resolution = round_resolution(choice_.ldc);
-    else for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
+    if (choice_.ldc != 0)
+        stats.resolution = round_resolution(choice_.ldc);
+    else
+        for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
     stats.counts = builder_ ? sum_of(fixed_counts_, builder_->counts()) : fixed_counts_;
     stats.bytes = (fixed_size_ + (builder_ ? builder_->size() : TableSize{})).bytes() +
                   cubes_.bodies().size() * (sizeof(LdcBody) + 24);

@@ -1,9 +1,10 @@
-// The cubes of a scene: those of bodies that never change their shape, built once, and those that are built for every frame.
+// The cubes of a scene: those of bodies that never change their shape, built once, and those that are built for every
+// frame.
 #pragma once
 
 #include <memory>
 
-#include "ldc/compute_builder.h"
+#include "ldc/cube_builder.h"
 #include "ldc/tracer.h"
 #include "scene/assembly.h"
 
@@ -17,8 +18,8 @@ struct CubeChoice {
     bool operator==(const CubeChoice&) const = default;
 };
 
-/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but at
-/// least a quarter of it.
+/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but
+/// at least a quarter of it.
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice);
 
 class SceneCubes {
@@ -56,7 +57,7 @@ class SceneCubes {
     TableSize fixed_size_;
     bool fixed_built_ = false;
     uint32_t fixed_redone_ = 0;
-    std::unique_ptr<ComputeBuilder> builder_;  ///< of what deforms
+    std::unique_ptr<CubeBuilder> builder_;  ///< of what deforms
 };
 
 }  // namespace peelray

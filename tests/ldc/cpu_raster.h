@@ -73,7 +73,7 @@ class CpuRaster {
             uint32_t first = 0;
             while (m[int(first)] < largest) first++;
             for (uint32_t axis = 0; axis < 3; axis++) {
-                const double share = m[int(axis)] / largest, limit = sampling == Sampling::centre ? 0.8 : 1;
+                const double share = m[int(axis)] / largest, limit = sampling == Sampling::band ? 0.8 : 1;
                 const bool may = axis == first || share > limit - 1e-6;
                 const bool close = sampling == Sampling::conservative
                                        ? second(m) > largest * (1 - 1e-6) && !exact_tie(m)
@@ -109,7 +109,7 @@ class CpuRaster {
                   x1 = int(std::min(dims.x - 1, std::floor(high.x + 2e-3)));
         const int y0 = int(std::max(0.0, std::floor(low.y - 2e-3))),
                   y1 = int(std::min(dims.y - 1, std::floor(high.y + 2e-3)));
-        const bool centre_only = sampling == Sampling::centre;
+        const bool centre_only = sampling == Sampling::band;
         const double half = centre_only ? 0.7 : 0.5;
         for (int y = y0; y <= y1; y++) {
             const Polygon row = centre_only ? whole : clip_box(whole, {-1e9, y, 0}, {1e9, y + 1, 0}, 2);

@@ -176,12 +176,12 @@ class CubeTest : public DeviceTest {
         const auto slope = [&](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
         ASSERT_NEAR(slope(sample.data.y), seen.slope.x, 7.8e-5);
         ASSERT_NEAR(slope(sample.data.y >> 14), seen.slope.y, 7.8e-5);
-        ASSERT_TRUE(sampling == Sampling::centre || sample.data.x >> 16) << "no coverage";
+        ASSERT_TRUE(sampling == Sampling::band || sample.data.x >> 16) << "no coverage";
     }
     void expect_right(const Mesh3& mesh, uint32_t resolution) {
-        for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
+        for (const Sampling sampling : {Sampling::conservative, Sampling::band}) {
             SCOPED_TRACE(testing::Message()
-                         << "N = " << resolution << (sampling == Sampling::centre ? ", centre" : ", conservative"));
+                         << "N = " << resolution << (sampling == Sampling::band ? ", centre" : ", conservative"));
             expect_right(mesh, build(mesh, resolution, sampling), sampling);
             if (HasFailure()) return;
         }
@@ -263,7 +263,7 @@ TEST_F(CubeTest, NothingButDegenerateTrianglesIsAnEmptyCube) {
 }
 
 TEST_F(CubeTest, TwoBuildsAreTheSameByteForByte) {
-    for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
+    for (const Sampling sampling : {Sampling::conservative, Sampling::band}) {
         const Mesh3 mesh = soup(11, 800, vec3(1), 2.0f / 64);
         const Built first = build(mesh, 64, sampling), second = build(mesh, 64, sampling);
         EXPECT_TRUE(first.tables == second.tables);
@@ -355,9 +355,9 @@ class BodiesTest : public CubeTest {
 
 TEST_F(BodiesTest, AreBuiltAtOnceAsEachAlone) {
     const TriangleBuffers triangles(device(), all_.positions, all_.triangles);
-    for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
+    for (const Sampling sampling : {Sampling::conservative, Sampling::band}) {
         Cubes cubes(device(), bodies_, sampling);
-        ComputeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
+        CubeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
         builder.build(commands(), triangles);
         expect_bodies(cubes, builder.size(), sampling);
     }
@@ -369,10 +369,10 @@ TEST_F(BodiesTest, ThatStayKeepTheirTablesWhileOthersAreRebuiltAndGrow) {
     for (const uint32_t fixed : {1u, 2u, 3u}) {
         SCOPED_TRACE(fixed);
         Cubes cubes(device(), bodies_, sampling);
-        ComputeBuilder first(device(), commands(), cubes, 0, fixed);
+        CubeBuilder first(device(), commands(), cubes, 0, fixed);
         first.build(commands(), triangles);
         const test::Tables before = test::download(commands(), cubes, first.size());
-        ComputeBuilder second(device(), commands(), cubes, fixed, uint32_t(bodies_.size()) - fixed, first.size());
+        CubeBuilder second(device(), commands(), cubes, fixed, uint32_t(bodies_.size()) - fixed, first.size());
         for (int i = 0; i < 2; i++) {
             second.build(commands(), triangles);
             expect_bodies(cubes, first.size() + second.size(), sampling);
@@ -386,7 +386,7 @@ TEST_F(BodiesTest, FollowTheirBounds) {
     // The last body's bounds change on the device: so does its grid, and nothing else does.
     const TriangleBuffers triangles(device(), all_.positions, all_.triangles);
     Cubes cubes(device(), bodies_, Sampling::conservative);
-    ComputeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
+    CubeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
     builder.build(commands(), triangles);
     const auto before = cubes.download_bodies(commands());
     std::vector<CubeBody> wider = bodies_;
@@ -399,7 +399,7 @@ TEST_F(BodiesTest, FollowTheirBounds) {
         const CubeGrid expected = make_grid(wider[i].lower, wider[i].upper, wider[i].resolution);
         EXPECT_EQ(after[i].grid.dims, expected.dims) << i;
         EXPECT_NEAR(after[i].grid.voxel / expected.voxel, 1, 1e-6) << i;
-        EXPECT_EQ(after[i].first_top, before[i].first_top) << i;
+        EXPECT_EQ(after[i].first_cell, before[i].first_cell) << i;
     }
     EXPECT_GT(after.back().grid.voxel, 1.5f * before.back().grid.voxel);
     expect_bodies(cubes, builder.size(), Sampling::conservative);
@@ -418,7 +418,7 @@ TEST_F(CubeTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {
     mesh.add(a, b, {0, 0, -inf});                   // 6
     mesh.add({nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan});
     mesh.add(a, c, {0.3f, 0.2f, 0.1f});  // 8
-    for (const Sampling sampling : {Sampling::conservative, Sampling::centre}) {
+    for (const Sampling sampling : {Sampling::conservative, Sampling::band}) {
         const Built built = build(mesh, 64, sampling);
         EXPECT_EQ(built.counts.degenerate, 3u);
         EXPECT_EQ(built.counts.invalid, 4u);
@@ -448,7 +448,7 @@ TEST_F(CubeTest, SoftwareDevicesRefuseListsThatRaysCannotWalk) {
 TEST_F(CubeTest, BytesAreWhatTheTablesUse) {
     const Built built = build(soup(3, 200, vec3(1, 0.5f, 0.2f), 2.0f / 64), 64, Sampling::conservative);
     const LdcCounters& c = built.counts;
-    EXPECT_EQ((TableSize{c.tops, c.occupied, c.nodes, c.fragments}.bytes()),
+    EXPECT_EQ((TableSize{c.cells, c.occupied, c.nodes, c.fragments}.bytes()),
               built.tables.top.size() * 8 + built.tables.node.size() * 4 + built.tables.voxel.size() * 4 +
                   built.tables.samples.size() * 12);
 }

@@ -17,7 +17,7 @@ struct Tables {
 
 /// All that builds of `size` in all left in the tables.
 inline Tables download(Commands& commands, const Cubes& cubes, const TableSize& size) {
-    return {commands.download<glm::uvec2>(cubes.top_table, size.tops),
+    return {commands.download<glm::uvec2>(cubes.top_table, size.cells),
             commands.download<glm::uvec2>(cubes.samples, size.samples),
             commands.download<uint32_t>(cubes.node_table, size.occupied * 64),
             commands.download<uint32_t>(cubes.voxel_table, size.nodes * 64),
@@ -58,8 +58,8 @@ class DecodedCube {
     void decode() {
         for (uint32_t i = 0; i < tops_.x * tops_.y * tops_.z; i++) {
             const glm::uvec3 cell(i % tops_.x, i / tops_.x % tops_.y, i / (tops_.x * tops_.y));
-            ASSERT_LT(body_.first_top + i, tables_.top.size());
-            const glm::uvec2 entry = tables_.top[body_.first_top + i];
+            ASSERT_LT(body_.first_cell + i, tables_.top.size());
+            const glm::uvec2 entry = tables_.top[body_.first_cell + i];
             if (!(entry.x >> 31)) {
                 check_top_box(cell, entry);
                 continue;
@@ -81,7 +81,7 @@ class DecodedCube {
         for (uint32_t z = lo.z; z <= hi.z; z++)
             for (uint32_t y = lo.y; y <= hi.y; y++)
                 for (uint32_t x = lo.x; x <= hi.x; x++)
-                    ASSERT_FALSE(tables_.top[body_.first_top + (z * tops_.y + y) * tops_.x + x].x >> 31)
+                    ASSERT_FALSE(tables_.top[body_.first_cell + (z * tops_.y + y) * tops_.x + x].x >> 31)
                         << "an occupied cell in an empty cell's box";
     }
     /// An empty entry's box among the 64 entries from `first` of `table`.

@@ -2,7 +2,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "../gpu/device_fixture.h"
-#include "ldc/compute_builder.h"
+#include "ldc/cube_builder.h"
 #include "ldc/tracer.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
@@ -48,7 +48,8 @@ class InstancesTest : public DeviceTest {
         std::vector<Placed> list;
         for (uint32_t i = 0; i < count; i++) {
             const vec3 at = size * (vec3(unit(), unit(), unit()) - 0.5f);
-            const glm::quat turn = glm::normalize(glm::quat(unit() - 0.5f, unit() - 0.5f, unit() - 0.5f, unit() - 0.5f));
+            const glm::quat turn =
+                glm::normalize(glm::quat(unit() - 0.5f, unit() - 0.5f, unit() - 0.5f, unit() - 0.5f));
             vec3 scale(0.3f + 0.7f * unit());
             if (i % 3 == 1) scale *= vec3(0.4f + unit(), 1, 0.3f + unit());
             if (i % 5 == 2) scale.x = -scale.x;
@@ -61,7 +62,7 @@ class InstancesTest : public DeviceTest {
     struct World {
         TriangleBuffers triangles;
         Cubes cubes;
-        ComputeBuilder builder;
+        CubeBuilder builder;
         Instances instances;
         TracedScene traced() const { return {cubes, instances, triangles}; }
 
@@ -118,8 +119,7 @@ class InstancesTest : public DeviceTest {
 
     std::vector<FileHit> trace(World& world, const std::vector<Ray>& rays, bool any_hit = false,
                                const std::vector<SurfaceId>& skip = {}) {
-        const Buffer ray_buffer = upload(rays), ids = upload(ids_),
-                     hits(device(), "hits", rays.size() * sizeof(Hit)),
+        const Buffer ray_buffer = upload(rays), ids = upload(ids_), hits(device(), "hits", rays.size() * sizeof(Hit)),
                      file_hits(device(), "file hits", rays.size() * sizeof(FileHit));
         Buffer skip_buffer;
         if (!skip.empty()) skip_buffer = upload(skip);
@@ -132,12 +132,14 @@ class InstancesTest : public DeviceTest {
     }
 
     /// Does the ray lie in the triangle's plane as far as placing its corners in single precision tells? The oracle's
-    /// triangles are rounded in the world, those of the cubes are not: that turns a plane by the rounding over the size.
+    /// triangles are rounded in the world, those of the cubes are not: that turns a plane by the rounding over the
+    /// size.
     static bool in_the_plane(const Geometry& g, const Ray& ray, uint32_t triangle) {
         if (triangle == ~0u) return false;
         const glm::uvec3 t = g.triangles[triangle];
         const glm::dvec3 a = g.positions[t.x], b = g.positions[t.y], c = g.positions[t.z];
-        const glm::dvec3 cross = glm::cross(b - a, c - a), reach = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+        const glm::dvec3 cross = glm::cross(b - a, c - a),
+                         reach = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
         const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
         const double height = glm::length(cross) / longest;
         const double slope = std::abs(glm::dot(glm::normalize(cross), glm::normalize(glm::dvec3(ray.direction))));
@@ -242,7 +244,8 @@ TEST_F(InstancesTest, InOnePlaceAreFoundToo) {
 }
 
 TEST_F(InstancesTest, FarAwayAndVeryLargeOrSmallStayExact) {
-    for (const auto& [scale, shift] : {std::pair(1e-4f, vec3(0)), std::pair(1e5f, vec3(0)), std::pair(1.f, vec3(20, -30, 40))}) {
+    for (const auto& [scale, shift] :
+         {std::pair(1e-4f, vec3(0)), std::pair(1e5f, vec3(0)), std::pair(1.f, vec3(20, -30, 40))}) {
         SCOPED_TRACE(scale);
         auto placed = scatter(40, 8, 9);
         for (Placed& p : placed)
@@ -302,8 +305,8 @@ TEST_F(InstancesTest, WithImpossibleTransformsAreNowhere) {
     const auto hits = trace(*world, rays);
     size_t wrong = 0;
     for (size_t i = 0; i < rays.size(); i++)
-        wrong += oracle.check(test::oracle_ray(rays[i]), hits[i].t, hits[i].triangle == ~0u ? ~0u : hits[i].triangle - before) ==
-                 Verdict::wrong;
+        wrong += oracle.check(test::oracle_ray(rays[i]), hits[i].t,
+                              hits[i].triangle == ~0u ? ~0u : hits[i].triangle - before) == Verdict::wrong;
     EXPECT_EQ(wrong, 0u);
 }
 

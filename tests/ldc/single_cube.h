@@ -1,7 +1,7 @@
 // Bodies with their cubes and an instance of each where it is: what most tests of cubes need.
 #pragma once
 
-#include "ldc/compute_builder.h"
+#include "ldc/cube_builder.h"
 #include "ldc/tracer.h"
 
 namespace peelray::test {
@@ -10,7 +10,7 @@ namespace peelray::test {
 struct SingleCube {
     TriangleBuffers triangles;
     Cubes cubes;
-    ComputeBuilder builder;
+    CubeBuilder builder;
     Instances instances;
     CubeGrid grid{};
 

@@ -9,11 +9,11 @@ PROBE(Input, Output)
 Output probe(Input x) {
     const LdcTriangle t = LdcTriangle(x.a, x.b, x.c, x.slope);
     const vec2 centre = vec2(x.pixel) + 0.5;
-    const bool planar = x.planar != 0u;
+    const uint sampling = x.planar != 0u ? LDC_BAND : LDC_CONSERVATIVE;
     Output o;
     o.edges = ldcEdges(t, centre);
-    o.covers = ldcCovers(t, ldcReach(t), centre, planar) ? 1u : 0u;
-    o.depth = ldcDepthRange(t, centre, planar);
-    o.packed = ldcPackSample(t, uvec3(x.pixel, x.voxel_w), 2u, planar);  // in the z-LDI (u, v, w) is (x, y, z)
+    o.covers = ldcCovers(t, ldcReach(t), centre, sampling) ? 1u : 0u;
+    o.depth = ldcDepthRange(t, centre, sampling, 0.0);
+    o.packed = ldcPackSample(t, uvec3(x.pixel, x.voxel_w), 2u, sampling);  // in the z-LDI (u, v, w) is (x, y, z)
     return o;
 }

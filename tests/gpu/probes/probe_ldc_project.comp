@@ -10,7 +10,7 @@ Output probe(Input x) {
     Output o;
     o.normal = ldcNormal(x.a, x.b, x.c, x.grid.inv_voxel);
     o.axis = ldcAxis(o.normal);
-    o.captured = ldcCaptured(o.normal, x.axis, x.planar != 0u) ? 1u : 0u;
+    o.captured = ldcCaptured(o.normal, x.axis, x.planar != 0u ? LDC_BAND : LDC_CONSERVATIVE) ? 1u : 0u;
     const LdcTriangle t = ldcProject(x.grid, x.a, x.b, x.c, o.normal, x.axis);
     o.a = t.a;
     o.b = t.b;

@@ -1,0 +1,59 @@
+// A build in two stages: a rasteriser makes fragments of triangles, an order files them as a traversal reads them.
+// Private to src/ldc.
+#pragma once
+
+#include "gpu/commands.h"
+#include "ldc/cubes.h"
+
+namespace peelray {
+
+/// Guessed sizes of a build, before anything is counted.
+struct BuildSize {
+    uint64_t cells = 0;   ///< 16³ cells of all grids
+    uint64_t pixels = 0;  ///< of all LDIs
+    uint64_t triangles = 0;
+};
+
+/// What the stages share.
+struct BuildState {
+    Device& device;
+    Cubes& cubes;
+    TableSize before;    ///< what the tables hold of bodies that were built earlier and stay
+    LdcParams params{};  ///< with the capacities that the buffers have now
+    Buffer counters;     ///< one LdcCounters
+    Buffer groups;       ///< LDC_GROUPS workgroup counts
+    Buffer fragments;    ///< LdcFragment each
+    Buffer node_masks;   ///< two uint32 per 16³ cell: its occupied nodes; by pixel: not used
+
+    /// Bytes that the device binds at once.
+    uint64_t most() const { return device.limits().maxStorageBufferRange; }
+    /// Counts the workgroups of the indirect passes anew.
+    void record_groups(Commands& commands) const;
+};
+
+class BuildStage {
+  public:
+    virtual ~BuildStage() = default;
+    /// Sets the capacities of `state.params` that are this stage's own.
+    virtual void guess(BuildState& state, const BuildSize& size) = 0;
+    /// Makes room for the capacities.
+    virtual void allocate(Commands& commands, BuildState& state) = 0;
+    /// Clears what the build counts in. Runs before all stages.
+    virtual void clear(Commands&, const BuildState&) {}
+    virtual void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) = 0;
+    /// After the submission: raises the capacities that did not do; true if there were any.
+    virtual bool grow(BuildState& state, const LdcCounters& counts) = 0;
+    /// Bytes of scratch memory held.
+    virtual uint64_t bytes() const = 0;
+};
+
+/// `count` elements of so many bytes, as many of them as the device binds.
+uint32_t bounded(const BuildState& state, uint64_t count, uint64_t bytes_each);
+/// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; tells whether it did.
+bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most);
+
+/// The two passes of the prefix sum over `sums` (uvec2 each): as many as counter number `counter` says.
+void record_scan(Commands& commands, const BuildState& state, uint32_t capacity, uint32_t counter, const Buffer& sums,
+                 const Buffer& block_sums);
+
+}  // namespace peelray

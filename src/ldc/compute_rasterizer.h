@@ -1,0 +1,20 @@
+// The `compute` builder's rasteriser: small triangles one thread each, large ones in tiles. Private to src/ldc.
+#pragma once
+
+#include "ldc/build_stage.h"
+
+namespace peelray {
+
+class ComputeRasterizer : public BuildStage {
+  public:
+    void guess(BuildState& state, const BuildSize& size) override;
+    void allocate(Commands& commands, BuildState& state) override;
+    void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
+    bool grow(BuildState& state, const LdcCounters& counts) override;
+    uint64_t bytes() const override { return big_triangles_.bytes() + tiles_.bytes(); }
+
+  private:
+    Buffer big_triangles_, tiles_;
+};
+
+}  // namespace peelray

@@ -1,0 +1,25 @@
+// The by-voxel order, which the `voxel` traversal reads (docs/data.md). Private to src/ldc.
+#pragma once
+
+#include "ldc/build_stage.h"
+
+namespace peelray {
+
+class VoxelOrder : public BuildStage {
+  public:
+    void guess(BuildState& state, const BuildSize& size) override;
+    void allocate(Commands& commands, BuildState& state) override;
+    void clear(Commands& commands, const BuildState& state) override;
+    void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
+    bool grow(BuildState& state, const LdcCounters& counts) override;
+    uint64_t bytes() const override;
+
+  private:
+    void record_nodes(Commands& commands, const BuildState& state);
+    void record_lists(Commands& commands, const BuildState& state, const TriangleBuffers& triangles);
+    void record_boxes(Commands& commands, const BuildState& state);
+
+    Buffer sums_, block_sums_, top_cells_, node_cells_, voxel_counts_, long_lists_, unsorted_ids_, occupancy_sums_;
+};
+
+}  // namespace peelray
