@@ -20,6 +20,9 @@ BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 9, PeelrayInstance, instance_cubes
 #define PEELRAY_VOXEL(i) voxel_table[i]
 #define PEELRAY_SAMPLE(i) samples[i]
 #define PEELRAY_SAMPLE_ID(i) sample_ids[i]
+// By pixel the same bindings hold the offsets of the pixels and the ranges of the coarse levels.
+#define PEELRAY_OFFSET(i) node_table[i]
+#define PEELRAY_RANGE(i) uintBitsToFloat(uvec2(voxel_table[2u * (i)], voxel_table[2u * (i) + 1u]))
 
 void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
     const uvec3 corners = triangles[id];
@@ -29,7 +32,7 @@ void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
 }
 #define PEELRAY_TRIANGLE(id, a, b, c) cubeTriangle(id, a, b, c)
 
-/// Barycentric weights (second and third corner) of a planar hit at `p`: of the nearest point of the triangle's plane, moved
+/// Barycentric weights (second and third corner) of a hit at `p` on a sample: of the nearest point of the triangle's plane, moved
 /// into the triangle.
 vec2 cubeWeights(uint instance, uint triangle, vec3 p) {
     vec3 a, b, c;

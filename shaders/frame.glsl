@@ -96,7 +96,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
     s.position = a * weights.x + b * weights.y + c * weights.z;
     s.error = largest(reach) * 1e-6;
-    s.offset = frame[0].surface_offset * instances[instance].voxel;
+    s.offset = frame[0].surface_offset * instances[instance].voxel + frame[0].tolerance;
     const vec3 cross_product = turned * cross(b - a, c - a);
     const float size = length(cross_product);
     vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;

@@ -270,8 +270,10 @@ struct TraceParams {
     uint counted;   ///< 1: the count is queue[counter]
     uint counter;
     uint skips;     ///< 1: ray i must not hit skip[i]
+    float tolerance;  ///< of `tolerance` hits, world units
+    uvec2 block;      ///< pixels of a block of two_level
 };
-SHARED_SIZE(TraceParams, 56);
+SHARED_SIZE(TraceParams, 68);
 
 // --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
 
@@ -334,12 +336,14 @@ struct Frame {
     vec3 sun_radiance;
     uint effects;        ///< EFFECT_*
     vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
-    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (planar hits)
+    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of exact hits)
     uint spp;
     uint last_level;     ///< level whose hits spawn no more rays
     float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
+    float tolerance;     ///< of `tolerance` hits, world units; else 0
+    uvec2 block;         ///< pixels of a block of two_level
 };
-SHARED_SIZE(Frame, 288);
+SHARED_SIZE(Frame, 300);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -3,8 +3,9 @@
 #include "common.glsl"
 #include "params.h"
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool planar = false;
+layout(constant_id = 0) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
+layout(constant_id = 2) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -30,14 +31,15 @@ const uint SHADOW_LAYERS = 16u;
 vec3 visibility(Ray leaving, SurfaceId from) {
     PeelrayRay ray = PeelrayRay(leaving.origin, leaving.tmin, leaving.direction, leaving.tmax);
     uvec2 skip = uvec2(from.instance, from.triangle);
-    if (!glass) return vec3(peelrayTrace(frame[0].tree, ray, skip, true, planar).triangle == PEELRAY_MISS ? 1.0 : 0.0);
+    const PeelrayOptions options = PeelrayOptions(!glass, hit_test, traversal, frame[0].tolerance, frame[0].block);
+    if (!glass) return vec3(peelrayTrace(frame[0].tree, ray, skip, options).triangle == PEELRAY_MISS ? 1.0 : 0.0);
     vec3 share = vec3(1);
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
-        const PeelrayHit hit = peelrayTrace(frame[0].tree, ray, skip, false, planar);
+        const PeelrayHit hit = peelrayTrace(frame[0].tree, ray, skip, options);
         if (hit.triangle == PEELRAY_MISS) return share;
         const GpuMaterial m = materials[triangle_materials[hit.triangle]];
         if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
-        const vec2 uv = planar ? cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;
+        const vec2 uv = hit_test != PEELRAY_EXACT ? cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;
         const Surface s = surfaceAt(hit.instance, hit.triangle, uv, ray.direction);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         float reflected = fresnelDielectric(clamp(-dot(ray.direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);

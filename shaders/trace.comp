@@ -4,8 +4,9 @@
 #include "params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool any_hit = false;
-layout(constant_id = 1) const bool planar = false;
+layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 2) const bool precise_edges = false;
+layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
 BUFFER(readonly, 10, Ray, rays)
@@ -22,8 +23,9 @@ void main() {
     const Ray ray = rays[i];
     uvec2 own = uvec2(PEELRAY_MISS);
     if (params.skips != 0u) own = uvec2(skip[i].instance, skip[i].triangle);
-    const PeelrayHit hit = peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), own, any_hit, planar);
+    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block);
+    const PeelrayHit hit = peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), own, options);
     vec2 uv = hit.uv;
-    if (planar && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction);
+    if (hit_test != PEELRAY_EXACT && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction);
     hits[i] = Hit(hit.t, hit.triangle, hit.instance, uv.x, uv.y);
 }

@@ -1,4 +1,4 @@
-// Ray traversal of layered depth cubes in the by-voxel order (docs/frame.md, docs/data.md).
+// Ray traversal of layered depth cubes (docs/frame.md, docs/data.md).
 //
 // Binding-free: the including shader supplies the fetches, before the #include:
 //   PeelrayInstance PEELRAY_INSTANCE(uint i)   cubes placed in the world
@@ -8,6 +8,8 @@
 //   uint  PEELRAY_VOXEL(uint i)       64 entries per occupied node: voxels
 //   uvec2 PEELRAY_SAMPLE(uint i)      samples, the list of a voxel in a row
 //   uint  PEELRAY_SAMPLE_ID(uint i)   triangle id * 4 + axis of the LDI
+//   uint  PEELRAY_OFFSET(uint i)      by pixel: where a pixel's samples begin
+//   vec2  PEELRAY_RANGE(uint i)       by pixel: least and greatest depth in a block or cell of the pyramid
 //   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` only)
 // and may define
 //   PEELRAY_COUNTERS  a uvec4 that counts steps, lists, samples tested, triangles tested
@@ -15,9 +17,9 @@
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
 //
-// A cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
+// By voxel a cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
 // made: every empty cell knows an empty box around it, which a ray leaves in one step. The instances are leaves of a hierarchy
-// of eight boxes a node, in the order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first.
+// of eight boxes a node, in the order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first. By pixel: peelray_pixels.glsl.
 #ifndef PEELRAY_GLSL
 #define PEELRAY_GLSL
 
@@ -32,6 +34,24 @@
 #endif
 
 const uint PEELRAY_MISS = 0xffffffffu;
+
+// Hit tests.
+const uint PEELRAY_EXACT = 0u;      ///< the triangles themselves
+const uint PEELRAY_PLANAR = 1u;     ///< the samples' planes
+const uint PEELRAY_TOLERANCE = 2u;  ///< the samples' depths, within a distance
+// Traversals, each with the order of the samples that it reads.
+const uint PEELRAY_VOXELS = 0u;     ///< by voxel
+const uint PEELRAY_TWO_LEVEL = 1u;  ///< by pixel, with one coarse level
+const uint PEELRAY_MIPMAP = 2u;     ///< by pixel, with a min/max pyramid
+
+/// How rays are traced. Constants, but for the last two.
+struct PeelrayOptions {
+    bool any_hit;     ///< some hit instead of the nearest
+    uint hit;         ///< PEELRAY_EXACT, ...
+    uint traversal;   ///< PEELRAY_VOXELS, ...
+    float tolerance;  ///< world units
+    uvec2 block;      ///< pixels of a block of the coarse level along u and v
+};
 
 struct PeelrayHit {
     float t;        ///< in lengths of the ray's direction; +inf: a miss
@@ -68,46 +88,107 @@ vec3 peelrayInverse(vec3 d) {
 
 vec3 peelrayTurn(PeelrayInstance place, vec3 v) { return vec3(dot(place.x, v), dot(place.y, v), dot(place.z, v)); }
 
-/// Nearest hit of a ray in one instance's cube with tmin < t < hit.t replaces `hit`; `any_hit`: some hit. The ray is valid
-/// (peelrayTrace), `skip` a triangle that does not count.
-void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bool planar, inout PeelrayHit hit) {
-    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
+/// A ray in a cube's voxel space: o + s * d, where d is the ray's direction there times a power of two (exact), largest component
+/// about 1, and s = t * s_per_t - s_shift.
+struct PeelrayLocal {
+    vec3 start;      ///< its origin, from the cube's corner, in the units of the body's space
+    vec3 o, d, inv;  ///< inv: 1 / d
+    ivec3 last;      ///< the cube's last voxel
+    float s_per_t, s_shift;
+    float s_min;
+    float s_best;    ///< the nearest hit so far, or the end of the ray
+    float s_begin, s_end;  ///< in the cube
+    float tolerance;       ///< of `tolerance` hits, voxels
+};
+
+/// The ray as far as a hit at `t_best`; false: it does not meet the cube.
+bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, PeelrayOptions options, out PeelrayLocal r) {
     const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
-    const ivec3 last = ivec3(tops) * 16 - 1;
-    // Voxel space: position o + s * d, where d is the ray's direction there times a power of two (exact), largest component
-    // about 1, and s = t * s_per_t.
+    r.last = ivec3(tops) * 16 - 1;
     const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
     const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
-    const vec3 d = turned * scale;
-    const float s_per_t = place.inv_voxel / scale;
-    const vec3 inv = peelrayInverse(d), size = vec3(tops) * 16.0;
+    r.d = turned * scale;
+    r.s_per_t = place.inv_voxel / scale;
+    r.inv = peelrayInverse(r.d);
+    r.tolerance = 0.0;
+    if (options.hit == PEELRAY_TOLERANCE)
+        r.tolerance = options.tolerance * place.inv_voxel * length(turned) / length(ray.direction);
+    const vec3 size = vec3(tops) * 16.0;
 
     // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
-    vec3 start = peelrayTurn(place, ray.origin - place.corner);
-    vec3 o = start * place.inv_voxel;
-    vec2 inside = peelrayClip(o, inv, size);
-    float s_shift = 0.0;
+    r.start = peelrayTurn(place, ray.origin - place.corner);
+    r.o = r.start * place.inv_voxel;
+    vec2 inside = peelrayClip(r.o, r.inv, size);
+    r.s_shift = 0.0;
     if (inside.x > 0.0 || inside.y < 0.0) {
         // To a little before the box: far away the place of entry is known only to some voxels.
         const float rounding = 1e-6 * abs(inside.x) + 1.0;
-        if (!(inside.x <= inside.y + rounding)) return;
-        const float along = (inside.x - rounding) / s_per_t;
-        s_shift = along * s_per_t;
-        start = peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
-                                        peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
-                                        peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
-        o = start * place.inv_voxel;
-        inside = peelrayClip(o, inv, size);
+        if (!(inside.x <= inside.y + rounding)) return false;
+        const float along = (inside.x - rounding) / r.s_per_t;
+        r.s_shift = along * r.s_per_t;
+        r.start = peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
+                                          peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
+                                          peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
+        r.o = r.start * place.inv_voxel;
+        inside = peelrayClip(r.o, r.inv, size);
     }
-    const float s_min = ray.tmin * s_per_t - s_shift;
-    float s_best = hit.t * s_per_t - s_shift;  // the nearest hit so far, or the end of the ray
-    const float s_begin = max(s_min, inside.x), s_end = min(s_best, inside.y);
-    if (!(s_begin <= s_end)) return;
+    r.s_min = ray.tmin * r.s_per_t - r.s_shift;
+    r.s_best = t_best * r.s_per_t - r.s_shift;
+    r.s_begin = max(r.s_min, inside.x);
+    r.s_end = min(r.s_best, inside.y);
+    return r.s_begin <= r.s_end;
+}
 
-    const bvec3 up = greaterThanEqual(d, vec3(0));
-    const vec3 o_inv = o * inv;
-    float s = s_begin, s_out = s_begin;
-    ivec3 cell = clamp(ivec3(floor(o + s * d)), ivec3(0), last), lo = cell, hi = cell;
+/// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
+bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, inout PeelrayLocal r, inout PeelrayHit hit) {
+    PEELRAY_COUNT(w);
+    vec3 a, b, c;
+    PEELRAY_TRIANGLE(id, a, b, c);
+    float t;
+    vec2 uv;
+    uint found = peelrayIntersect(r.start, r.d, a - place.origin, b - place.origin, c - place.origin, t, uv);
+    float s_hit = t * place.inv_voxel;
+#ifdef PEELRAY_PRECISE
+    if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
+        const vec2 x = peelrayTwoSum(r.start.x, place.origin.x), y = peelrayTwoSum(r.start.y, place.origin.y),
+                   z = peelrayTwoSum(r.start.z, place.origin.z);
+        const bool as_given = r.s_shift == 0.0 && place.moved == 0u;
+        found = peelrayIntersectPrecise(as_given ? ray.origin : vec3(x.x, y.x, z.x), as_given ? vec3(0) : vec3(x.y, y.y, z.y), r.d, a, b, c, t,
+                                        uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
+        s_hit = t * place.inv_voxel;
+    }
+#endif
+    if ((found & PEELRAY_INSIDE) == 0u || !(s_hit > r.s_min && s_hit < r.s_best)) return false;
+    r.s_best = s_hit;
+    hit.triangle = id;
+    hit.uv = uv;
+    return true;
+}
+
+/// `tolerance`: where a ray, while it is in the column of the pixel [0, 1] x [0, 1], comes nearest in depth to a sample at depth `w`;
+/// false: it stays farther from it than the tolerance, or what it has hit lies before. `o`, `d`, `inv` as the LDI sees them.
+bool peelrayTestDepth(PeelrayLocal r, vec3 o, vec3 d, vec3 inv, float w, out float s) {
+    const vec2 a = -o.xy * inv.xy, b = (1.0 - o.xy) * inv.xy;
+    const vec2 enters = min(a, b), leaves = max(a, b);
+    const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_best, min(leaves.x, leaves.y));
+    s = clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
+    return s_in <= s_out && abs(o.z + s * d.z - w) <= r.tolerance && s > r.s_min && s < r.s_best;
+}
+
+/// The LDI's view of a vector: (u, v, w).
+vec3 peelrayToImage(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
+
+/// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
+/// valid (peelrayTrace), `skip` a triangle that does not count.
+void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
+    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
+    PeelrayLocal r;
+    if (!peelrayEnterCube(place, ray, hit.t, options, r)) return;
+    const uvec3 tops = uvec3(r.last + 1) >> 4u;
+    const bvec3 up = greaterThanEqual(r.d, vec3(0));
+    const vec3 o_inv = r.o * r.inv;
+    float s = r.s_begin, s_out = r.s_begin;
+    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last), lo = cell, hi = cell;
     vec3 exits = vec3(0);
     uint j = 0u;        // the next sample of the cell's list
     bool more = false;  // the list has samples left
@@ -142,7 +223,7 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
                     hi = base + (ivec3(uvec3(entry >> 6u, entry >> 8u, entry >> 10u) & 3u) << scale) + (1 << scale) - 1;
                 }
             }
-            exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * inv - o_inv;
+            exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * r.inv - o_inv;
             s_out = min(exits.x, min(exits.y, exits.z));
 #ifdef PEELRAY_COUNTERS
             if (more) PEELRAY_COUNT(y);
@@ -150,7 +231,7 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
         }
 
         uint candidate = PEELRAY_MISS;
-        const vec3 o_cell = o - vec3(cell);
+        const vec3 o_cell = r.o - vec3(cell);
         while (more && candidate == PEELRAY_MISS) {
             PEELRAY_COUNT(z);
             // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
@@ -159,17 +240,26 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
             const uint axis = data.y >> 28u & 3u;
             const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
             const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
-            const vec3 dr = axis == 0u ? d.yzx : (axis == 1u ? d.zxy : d);
-            const vec3 or = axis == 0u ? o_cell.yzx : (axis == 1u ? o_cell.zxy : o_cell);
+            const vec3 dr = peelrayToImage(r.d, axis), or = peelrayToImage(o_cell, axis);
             const vec2 centre = or.xy - 0.5;
             const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
             const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
             const vec2 at = centre + s_plane * dr.xy;
-            if (planar) {
-                if (s_plane > s_min && s_plane < s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
+            if (options.hit == PEELRAY_TOLERANCE) {
+                float s_near;
+                if (peelrayTestDepth(r, or, dr, peelrayToImage(r.inv, axis), w, s_near)) {
                     const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
                     if (id != skip) {
-                        s_best = s_plane;
+                        r.s_best = s_near;
+                        hit.triangle = id;
+                        found_one = true;
+                    }
+                }
+            } else if (options.hit == PEELRAY_PLANAR) {
+                if (s_plane > r.s_min && s_plane < r.s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
+                    const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                    if (id != skip) {
+                        r.s_best = s_plane;
                         hit.triangle = id;
                         found_one = true;
                     }
@@ -180,7 +270,7 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
                 const float slack = PEELRAY_POSITION_SLACK + PEELRAY_PLANE_SLACK * abs(inv_den);
                 const uvec2 bit = uvec2(clamp(at * 4.0 + 2.0, vec2(0), vec2(3)));
                 const bool covered = !(slack < 0.02) || (data.x >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
-                if (covered && !(s_plane < s - slack) && !(s_plane > min(s_out, s_best) + slack)) candidate = j;
+                if (covered && !(s_plane < s - slack) && !(s_plane > min(s_out, r.s_best) + slack)) candidate = j;
             }
             more = (data.y >> 30u & 1u) == 0u;
             j++;
@@ -188,40 +278,16 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
 
         if (candidate != PEELRAY_MISS) {
             const uint id = PEELRAY_SAMPLE_ID(candidate) >> 2u;
-            if (id != skip) {
-                PEELRAY_COUNT(w);
-                vec3 a, b, c;
-                PEELRAY_TRIANGLE(id, a, b, c);
-                float t;
-                vec2 uv;
-                uint found = peelrayIntersect(start, d, a - place.origin, b - place.origin, c - place.origin, t, uv);
-                float s_hit = t * place.inv_voxel;
-#ifdef PEELRAY_PRECISE
-                if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
-                    const vec2 x = peelrayTwoSum(start.x, place.origin.x), y = peelrayTwoSum(start.y, place.origin.y),
-                               z = peelrayTwoSum(start.z, place.origin.z);
-                    const bool as_given = s_shift == 0.0 && place.moved == 0u;
-                    found = peelrayIntersectPrecise(as_given ? ray.origin : vec3(x.x, y.x, z.x), as_given ? vec3(0) : vec3(x.y, y.y, z.y), d,
-                                                    a, b, c, t, uv) ? PEELRAY_INSIDE : PEELRAY_OUTSIDE;
-                    s_hit = t * place.inv_voxel;
-                }
-#endif
-                if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {
-                    s_best = s_hit;
-                    hit.triangle = id;
-                    hit.uv = uv;
-                    found_one = true;
-                }
-            }
+            if (id != skip && peelrayTestTriangle(place, ray, id, r, hit)) found_one = true;
         }
-        if (any_hit && found_one) break;
+        if (options.any_hit && found_one) break;
 
         if (!more) {
-            if (s_out >= min(s_end, s_best)) break;
+            if (s_out >= min(r.s_end, r.s_best)) break;
             // Leave through the exit face; the other coordinates come from the position but never step backwards or out of
             // the box.
             s = max(s, s_out);
-            const ivec3 floor_at = ivec3(floor(o + s * d));
+            const ivec3 floor_at = ivec3(floor(r.o + s * r.d));
             cell = ivec3(up.x ? min(hi.x, max(cell.x, floor_at.x)) : max(lo.x, min(cell.x, floor_at.x)),
                          up.y ? min(hi.y, max(cell.y, floor_at.y)) : max(lo.y, min(cell.y, floor_at.y)),
                          up.z ? min(hi.z, max(cell.z, floor_at.z)) : max(lo.z, min(cell.z, floor_at.z)));
@@ -231,14 +297,16 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
                 cell.y = up.y ? hi.y + 1 : lo.y - 1;
             else
                 cell.z = up.z ? hi.z + 1 : lo.z - 1;
-            if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, last))) break;
+            if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, r.last))) break;
         }
     }
     if (found_one) {
-        hit.t = (s_best + s_shift) / s_per_t;
+        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
         hit.instance = instance;
     }
 }
+
+#include "peelray/peelray_pixels.glsl"
 
 /// Where a ray enters a box of the hierarchy, as an integer of the same order; PEELRAY_MISS: it does not, before `t_max`.
 uint peelrayEnter(PeelrayBox box, vec3 origin, vec3 inv, float t_min, float t_max) {
@@ -284,12 +352,11 @@ uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
     return word;
 }
 
-/// First hit of a ray in all instances with tmin < t < tmax; `any_hit`: some hit. `skip`: instance and triangle that do not
-/// count (PEELRAY_MISS: none). `planar`: hits on the samples' planes instead of exact hits.
+/// First hit of a ray in all instances with tmin < t < tmax. `skip`: instance and triangle that do not count (PEELRAY_MISS: none).
 ///
 /// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
 /// components may count as zero.
-PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, bool any_hit, bool planar) {
+PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOptions options) {
     const float infinity = uintBitsToFloat(0x7f800000u);
     const PeelrayHit miss = PeelrayHit(infinity, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
     const vec3 d_abs = abs(ray.direction);
@@ -337,8 +404,12 @@ PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, bool any_h
             enters = true;
             continue;
         }
-        peelrayTraceCube(box.instance, ray, skip.x == box.instance ? skip.y : PEELRAY_MISS, any_hit, planar, hit);
-        if (any_hit && hit.triangle != PEELRAY_MISS) break;
+        const uint own = skip.x == box.instance ? skip.y : PEELRAY_MISS;
+        if (options.traversal == PEELRAY_VOXELS)
+            peelrayTraceVoxels(box.instance, ray, own, options, hit);
+        else
+            peelrayTracePixels(box.instance, ray, own, options, hit);
+        if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
     }
     hit.t = hit.triangle == PEELRAY_MISS ? infinity : hit.t * scale;
     return hit;

@@ -70,6 +70,8 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
             {"--builder", t.builder},
             {"--traversal", t.traversal},
             {"--block", text(t.block)},
+            {"--routing", t.routing},
+            {"--depth", text(std::optional(t.depth))},
             {"--rebuild", flag(a.rebuild)},
             {"--aov", list(a.aovs, aov_names())}};
 }

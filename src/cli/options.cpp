@@ -57,27 +57,41 @@ void add_device_options(CLI::App& app, DeviceArguments& device) {
 const std::vector<std::string> kHits = {"auto", "exact", "planar", "tolerance"};
 const char* const kHitHelp =
     "exact: the triangles themselves; planar: the samples' planes, at a cost that does not depend on the number of "
-    "triangles; auto: exact up to a few million triangles; tolerance: not built yet";
+    "triangles; tolerance: the samples' depths, within --tolerance, as in the paper; auto: exact up to a few million "
+    "triangles (with --builder peel: planar)";
 
 void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
     const char* group = "Tracing";
-    add_parsed(app, "--ldc", tracing.ldc, parse_resolution, "auto or a number from 16 to 2048",
-               "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; smaller parts get "
-               "fewer; auto: by the number of triangles of each")
+    add_parsed(
+        app, "--ldc", tracing.ldc, parse_resolution, "auto or a number from 16 to 2048",
+        "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; smaller parts get "
+        "fewer; auto: by the number of triangles of each")
         ->type_name("auto|N")
         ->default_str("auto")
         ->group(group);
     add_number<double>(app, "--tolerance", tracing.tolerance, "distance of a hit of --hit tolerance, world units")
         ->default_str("0.001")
         ->group(group);
-    add_choice(app, "--builder", tracing.builder, {"auto", "compute", "abuffer", "peel"},
-               "how the layered depth cube is built (abuffer and peel: not built yet)")
+    add_choice(
+        app, "--builder", tracing.builder, {"auto", "compute", "abuffer", "peel"},
+        "who rasterises the layered depth cubes: compute shaders; the graphics pipeline in one pass (abuffer) or a "
+        "pass per layer (peel, as in the paper); auto: compute")
         ->group(group);
-    add_choice(app, "--traversal", tracing.traversal, {"voxel", "mipmap", "two-level"},
-               "how rays walk through the cube (mipmap and two-level: not built yet)")
+    add_choice(app, "--routing", tracing.routing, {"geometry", "draws"},
+               "how the graphics pipeline sends triangles to the three images: a geometry shader, or three draws")
+        ->group(group);
+    add_number<uint32_t>(app, "--depth", tracing.depth,
+                         "bits of the samples' depths of --traversal two-level and mipmap: 32, or 16 as in the paper")
+        ->type_name("16|32")
+        ->default_str("32")
+        ->group(group);
+    add_choice(
+        app, "--traversal", tracing.traversal, {"voxel", "mipmap", "two-level"},
+        "how rays walk through a cube: all of it at once by voxels, or one image after the other over blocks of pixels "
+        "(two-level, as in the paper) or a full pyramid (mipmap)")
         ->group(group);
     add_parsed(app, "--block", tracing.block, parse_block, "a number of pixels such as 8 or 8x4",
-               "pixels per block of --traversal two-level")
+               "pixels per block of --traversal two-level, 2 to 32 a side")
         ->type_name("N|NxM")
         ->default_str("8")
         ->group(group);
@@ -266,9 +280,8 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
         ->type_name("LIST")
         ->default_str("cubemap,ldc,reference")
         ->group(group);
-    add_parsed(
-        app, "--hit", a.hits, parse_hits, "a list out of auto,exact,planar,tolerance, each once",
-        "hit tests of ldc, one picture each, a list out of auto,exact,planar,tolerance (tolerance: not built yet)")
+    add_parsed(app, "--hit", a.hits, parse_hits, "a list out of auto,exact,planar,tolerance, each once",
+               "hit tests of ldc, one picture each, a list out of auto,exact,planar,tolerance")
         ->type_name("LIST")
         ->default_str("auto")
         ->group(group);

@@ -56,8 +56,8 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
     return make_on_gpu(settings, report);
 }
 
-/// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another, since
-/// what one needed must not count as another's memory.
+/// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another,
+/// since what one needed must not count as another's memory.
 Renderer& PictureMaker::renderer_for(const RenderSettings& settings) {
     const Kind kind{settings.tracer, settings.hit_auto, settings.hit};
     if (!renderer_ || !(kind == kind_)) {
@@ -87,7 +87,7 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     made.device = device_->info().name;
     if (s.cubes.bodies)
         made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
-                                   s.cubes.resolution, s.hit == HitTest::exact ? "exact" : "planar");
+                                   s.cubes.resolution, name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
                                    s.maps.shadows.maps);

@@ -135,7 +135,21 @@ void check_ranges(const PictureArguments& a) {
 
 void choose_hit(RenderSettings& settings, const std::string& hit) {
     settings.hit_auto = hit == "auto";
-    settings.hit = hit == "planar" ? HitTest::planar : HitTest::exact;
+    settings.hit = hit == "planar" ? HitTest::planar : hit == "tolerance" ? HitTest::tolerance : HitTest::exact;
+}
+
+void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
+    CubeLayout& layout = settings.layout;
+    settings.tolerance = float(tracing.tolerance);
+    layout.traversal = tracing.traversal == "two-level" ? Traversal::two_level
+                       : tracing.traversal == "mipmap"  ? Traversal::mipmap
+                                                        : Traversal::voxel;
+    layout.block = tracing.block;
+    layout.half_depth = tracing.depth == 16;
+    layout.builder = tracing.builder == "peel"      ? BuilderKind::peel
+                     : tracing.builder == "abuffer" ? BuilderKind::abuffer
+                                                    : BuilderKind::compute;
+    layout.routing = tracing.routing == "draws" ? Routing::draws : Routing::geometry;
 }
 
 RenderSettings settings_of(const PictureArguments& a) {
@@ -146,6 +160,7 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.width = a.size.x;
     settings.height = a.size.y;
     settings.ldc = a.tracing.ldc.value_or(0);
+    choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;
     settings.spp = a.spp;

@@ -28,7 +28,10 @@ struct PreparedScene {
 
 /// Throws Error for values that are well-formed but make no sense.
 void check_ranges(const PictureArguments& arguments);
-/// Settings for a hit test by its name: auto, exact or planar.
+/// Settings for a builder, a traversal and what belongs to them.
+void choose_tracing(RenderSettings& settings, const TracingArguments& tracing);
+
+/// Settings for a hit test by its name.
 void choose_hit(RenderSettings& settings, const std::string& hit);
 /// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);

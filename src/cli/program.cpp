@@ -48,14 +48,17 @@ void TracingArguments::check() const {
     };
     if (tracer == "khr") later("--tracer", tracer, "--tracer ldc");
     if (builder != "auto" && builder != "compute") later("--builder", builder, "--builder compute");
-    if (hit == "tolerance") later("--hit", hit, "--hit exact or planar");
-    if (traversal != "voxel") later("--traversal", traversal, "--traversal voxel");
     if (ldc && (*ldc < 16 || *ldc > 2048))
         fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
     if (!(tolerance > 0) || !std::isfinite(tolerance))
         fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
-    if (block.x < 1 || block.y < 1 || block.x > 64 || block.y > 64)
-        fail("a block of {}x{} pixels is out of range: choose 1 to 64 a side (--block)", block.x, block.y);
+    if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
+        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
+    if (depth != 16 && depth != 32) fail("a depth of {} bits is not supported: choose 16 or 32 (--depth)", depth);
+    if (depth == 16 && traversal == "voxel")
+        fail("--traversal voxel has a depth format of its own: use --depth 16 with --traversal two-level or mipmap");
+    if (depth == 16 && hit != "planar" && hit != "tolerance")
+        fail("depths of 16 bits are too coarse for --hit {}: use --depth 16 with --hit tolerance or planar", hit);
 }
 
 std::string one_line(std::string text) {

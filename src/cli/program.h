@@ -23,9 +23,10 @@ struct DeviceArguments {
 
 /// Options that choose how rays are traced; shared by render and trace.
 struct TracingArguments {
-    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel";
+    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel", routing = "geometry";
     double tolerance = 0.001;
     glm::uvec2 block{8};
+    uint32_t depth = 32;          ///< bits
     std::optional<uint32_t> ldc;  ///< none: automatic
 
     /// Throws Error for values out of range and for what this version does not build yet, naming what does work.

@@ -35,15 +35,19 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
 }
 
 Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
-                const Box& box, HitTest hit) {
+                const Box& box, const CubeChoice& choice) {
+    const bool by_pixel = choice.layout.by_pixel();
     Json json = {{"n", cubes.resolution},
                  {"box", box_stats(box.lower, box.upper)},
-                 {"builder", "compute"},
-                 {"sampling", hit == HitTest::exact ? "conservative" : "centre"},
+                 {"builder", name_of(choice.layout.builder)},
+                 {"traversal", name_of(choice.layout.traversal)},
+                 {"sampling", choice.hit == HitTest::exact    ? "conservative"
+                              : choice.hit == HitTest::planar ? "centre and band"
+                                                              : "centre"},
                  {"samples", cubes.counts.fragments},
                  {"layers", cubes.counts.longest},
-                 {"layers_of", "voxel list"},
-                 {"occupied_voxels", cubes.counts.voxels},
+                 {"layers_of", by_pixel ? "pixel" : "voxel list"},
+                 {by_pixel ? "occupied_pixels" : "occupied_voxels", cubes.counts.voxels},
                  {"occupied_nodes", cubes.counts.nodes},
                  {"bytes", cubes.bytes},
                  {"build_scratch_bytes", cubes.scratch_bytes},
@@ -101,13 +105,13 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
         {"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
         {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
     if (s.cubes.bodies) {
-        json["ldc"] = cube_stats(s.cubes, s.bodies, s.shown, box, s.hit);
+        json["ldc"] = cube_stats(s.cubes, s.bodies, s.shown, box, s.choice);
         json["moved"] = {{"cubes_rebuilt", s.rebuilt},
                          {"cubes_reused", s.cubes.bodies - s.rebuilt},
                          {"instances_transformed", s.moved}};
     }
     if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
-    json["hit"] = s.cubes.bodies ? (s.hit == HitTest::exact ? "exact" : "planar") : "none";
+    json["hit"] = s.cubes.bodies ? name_of(s.hit) : "none";
     json["memory_bytes"] = {{"scene", s.scene_bytes},
                             {"cube", s.cubes.bytes},
                             {"build_scratch", s.cubes.scratch_bytes},

@@ -11,10 +11,10 @@ namespace peelray {
 
 /// Device, driver, API version and the build's commit.
 nlohmann::ordered_json device_stats(const Device& device);
-/// The cubes: N (the largest), box, samples, layers, bytes, builder, and each one's own (the first 64). `bodies`: with the
-/// cubes' grids; `shown`: instances of each; `box`: of the whole scene.
+/// The cubes: N (the largest), box, samples, layers, bytes, builder, and each one's own (the first 64). `bodies`: with
+/// the cubes' grids; `shown`: instances of each; `box`: of the whole scene.
 nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
-                                  const std::vector<uint32_t>& shown, const Box& box, HitTest hit);
+                                  const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.

@@ -53,11 +53,11 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
 nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, const RayScene& scene,
                                    const Traced& traced, bool any_hit) {
     nlohmann::ordered_json json = device_stats(device);
-    const HitTest hit = scene.cubes().choice().hit;
+    const CubeChoice& choice = scene.cubes().choice();
     json["triangles"] = geometry.triangles.size();
     json["rays"] = traced.hits.size();
     json["hits"] = traced.found;
-    json["hit"] = hit == HitTest::exact ? "exact" : "planar";
+    json["hit"] = name_of(choice.hit);
     json["any_hit"] = any_hit;
     json["build_ms"] = scene.build_ms();
     for (const PassTime& time : scene.build_times()) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
@@ -67,7 +67,7 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
     if (traced.trace_ms > 0) json["mrays_per_second"] = double(traced.hits.size()) / traced.trace_ms * 1e-3;
     Commands commands(device);
     json["ldc"] = cube_stats(scene.cubes().stats(), scene.download_bodies(commands), scene.shown(),
-                             {geometry.lower, geometry.upper}, hit);
+                             {geometry.lower, geometry.upper}, choice);
     return json;
 }
 
@@ -87,6 +87,7 @@ void run_trace(const TraceArguments& a) {
 
     RenderSettings settings;
     settings.ldc = a.tracing.ldc.value_or(0);
+    choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
     const CubeChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
@@ -98,8 +99,7 @@ void run_trace(const TraceArguments& a) {
     if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced_scene, traced, a.any_hit));
 
     fmt::print("{}: {} rays, {} hits ({}), {} cubes of up to {}", a.hits.string(), rays.size(), traced.found,
-               choice.hit == HitTest::exact ? "exact" : "planar", traced_scene.cubes().stats().bodies,
-               traced_scene.cubes().stats().resolution);
+               name_of(choice.hit), traced_scene.cubes().stats().bodies, traced_scene.cubes().stats().resolution);
     if (device.timestamp_period() > 0)
         fmt::print("; on the GPU: cubes {:.2f} ms, rays {:.2f} ms", traced_scene.build_ms(), traced.trace_ms);
     fmt::print("; {}\n", device.info().name);

@@ -22,6 +22,30 @@ glm::uvec3 ordered_bits(const glm::vec3& p) {
 
 }  // namespace
 
+const char* name_of(Traversal traversal) {
+    switch (traversal) {
+        case Traversal::voxel:
+            return "voxel";
+        case Traversal::two_level:
+            return "two-level";
+        case Traversal::mipmap:
+            return "mipmap";
+    }
+    return "";
+}
+
+const char* name_of(BuilderKind builder) {
+    switch (builder) {
+        case BuilderKind::compute:
+            return "compute";
+        case BuilderKind::abuffer:
+            return "abuffer";
+        case BuilderKind::peel:
+            return "peel";
+    }
+    return "";
+}
+
 uint32_t round_resolution(uint32_t resolution) {
     if (resolution < 16 || resolution > 2048)
         fail("the LDI resolution {} is out of range: choose 16 to 2048 (--ldc)", resolution);

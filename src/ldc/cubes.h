@@ -61,6 +61,10 @@ enum class Routing : uint8_t {
     draws,     ///< each LDI is drawn on its own; vertices of triangles that are not its own are thrown away
 };
 
+/// As the command line calls them.
+const char* name_of(Traversal traversal);
+const char* name_of(BuilderKind builder);
+
 /// How cubes are built and stored.
 struct CubeLayout {
     Traversal traversal = Traversal::voxel;

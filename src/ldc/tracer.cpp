@@ -4,32 +4,79 @@
 
 namespace peelray {
 
+std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others) {
+    const bool by_pixel = cubes.layout().by_pixel();
+    const auto or_absent = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : absent; };
+    std::vector<Binding> bindings = {{"top_table", or_absent(cubes.top_table)},
+                                     {"node_table", or_absent(by_pixel ? cubes.pixel_offsets : cubes.node_table)},
+                                     {"voxel_table", or_absent(by_pixel ? cubes.pixel_ranges : cubes.voxel_table)},
+                                     {"samples", or_absent(cubes.samples)},
+                                     {"sample_ids", or_absent(cubes.sample_ids)}};
+    for (const Binding& other : others) bindings.push_back(other);
+    return bindings;
+}
+
+const char* name_of(HitTest test) {
+    switch (test) {
+        case HitTest::exact:
+            return "exact";
+        case HitTest::planar:
+            return "planar";
+        case HitTest::tolerance:
+            return "tolerance";
+    }
+    return "";
+}
+
+uint32_t shader_constant(HitTest test) {
+    switch (test) {
+        case HitTest::exact:
+            return 0;
+        case HitTest::planar:
+            return 1;
+        case HitTest::tolerance:
+            return 2;
+    }
+    return 0;
+}
+
+uint32_t shader_constant(Traversal traversal) {
+    switch (traversal) {
+        case Traversal::voxel:
+            return 0;
+        case Traversal::two_level:
+            return 1;
+        case Traversal::mipmap:
+            return 2;
+    }
+    return 0;
+}
+
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
-    std::vector<Binding> bindings = {{"top_table", scene.cubes.top_table},
-                                     {"node_table", scene.cubes.node_table},
-                                     {"voxel_table", scene.cubes.voxel_table},
-                                     {"samples", scene.cubes.samples},
-                                     {"sample_ids", scene.cubes.sample_ids},
-                                     {"positions", scene.triangles.positions},
+    std::vector<Binding> bindings = {{"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
                                      {"instances", scene.instances.table()},
                                      {"instance_boxes", scene.instances.boxes()},
                                      {"instance_cubes", scene.instances.cubes()}};
     for (const Binding& other : others) bindings.push_back(other);
-    return bindings;
+    return sample_bindings(scene.cubes, scene.cubes.body_table, bindings);
 }
 
 void record_trace(Commands& commands, Device& device, const TracedScene& scene, const RayQueue& queue,
-                  const Buffer& hits, HitTest test, bool any_hit, Edges edges) {
+                  const Buffer& hits, const TraceOptions& options) {
+    const HitTest test = options.test;
     assert(scene.cubes.sampling() == sampling_for(test));
-    const Pass& pass =
-        device.pass("trace", {any_hit, test == HitTest::planar, edges == Edges::precise && test == HitTest::exact});
+    const Pass& pass = device.pass(
+        "trace", {options.any_hit, shader_constant(test), options.edges == Edges::precise && test == HitTest::exact,
+                  shader_constant(scene.cubes.layout().traversal)});
     TraceParams p{};
     p.tree = scene.instances.tree();
     p.count = queue.count;
     p.counted = queue.counters != nullptr;
     p.counter = queue.counter;
     p.skips = queue.skip != nullptr;
+    p.tolerance = options.tolerance;
+    p.block = scene.cubes.layout().block;
     const std::vector<Binding> bindings =
         cube_bindings(scene, {{"rays", queue.rays},
                               {"skip", queue.skip ? *queue.skip : queue.rays},
@@ -44,12 +91,10 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
 
 void record_file_hits(Commands& commands, Device& device, const Instances& instances, const Buffer& triangle_ids,
                       const Buffer& hits, uint32_t count, const Buffer& file_hits) {
-    commands.run(device.pass("file_hits"),
-                 {{"hits", hits},
-                  {"instances", instances.table()},
-                  {"triangle_ids", triangle_ids},
-                  {"file_hits", file_hits}},
-                 count, groups_for(count, 64));
+    commands.run(
+        device.pass("file_hits"),
+        {{"hits", hits}, {"instances", instances.table()}, {"triangle_ids", triangle_ids}, {"file_hits", file_hits}},
+        count, groups_for(count, 64));
 }
 
 }  // namespace peelray

@@ -14,6 +14,9 @@ enum class HitTest : uint8_t {
     tolerance,  ///< the samples' depths, within a distance (the paper, section 3)
 };
 
+/// As the command line calls them.
+const char* name_of(HitTest test);
+
 /// What rays are traced in: all of a scene's cubes, placed in the world.
 struct TracedScene {
     const Cubes& cubes;
@@ -40,13 +43,28 @@ enum class Edges : uint8_t {
     precise,  ///< in doubled precision: as a double-precision ray tracer sees them
 };
 
+/// The tables of a cube as shaders/cube_fetch.glsl binds them, in either order; `absent` stands in for those that it
+/// has not. And `others`.
+std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others);
+
+/// Specialisation constants of the shaders that trace: PEELRAY_EXACT, ... and PEELRAY_VOXELS, ...
+uint32_t shader_constant(HitTest test);
+uint32_t shader_constant(Traversal traversal);
+
 /// The bindings of shaders/cube_fetch.glsl.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);
 
-/// Records the tracing of a queue: hits[i] (Hit each) for rays[i]. `any_hit`: some hit in (tmin, tmax), else the
-/// nearest. The cubes must have been sampled for `test` (conservative: exact, centre: planar); asserted.
+struct TraceOptions {
+    HitTest test = HitTest::exact;
+    float tolerance = 0;   ///< of HitTest::tolerance, world units
+    bool any_hit = false;  ///< some hit in (tmin, tmax), else the nearest
+    Edges edges = Edges::precise;
+};
+
+/// Records the tracing of a queue: hits[i] (Hit each) for rays[i], as the cubes' layout says. The cubes must have been
+/// sampled for the hit test (sampling_for); asserted.
 void record_trace(Commands& commands, Device& device, const TracedScene& scene, const RayQueue& queue,
-                  const Buffer& hits, HitTest test, bool any_hit, Edges edges = Edges::precise);
+                  const Buffer& hits, const TraceOptions& options);
 
 /// Records the translation of `count` hits into file_hits (FileHit each). `triangle_ids`: uint32 per triangle, its
 /// place in the file less the instance's InstanceInfo::first_id.

@@ -9,7 +9,7 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
       triangles_(device, assembly.positions, assembly.triangles),
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
       instances_(device, instance_infos(assembly)),
-      cubes_(device, assembly, choice),
+      cubes_(device, assembly, choice, smallest_scales(assembly, world_matrices(scene))),
       shown_(assembly.bodies.size()) {
     Commands commands(device);
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
@@ -31,7 +31,7 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
 void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
     record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
-                 cubes_.choice().hit, any_hit);
+                 {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
     record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
 }
 

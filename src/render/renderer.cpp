@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "render/transforms.h"
 
 namespace peelray {
 namespace {
@@ -44,9 +45,11 @@ void describe_view(Frame& frame, const View& view) {
 }  // namespace
 
 CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
-    CubeChoice choice{settings.ldc, settings.hit, settings.rebuild};
+    CubeChoice choice{settings.ldc, settings.hit, settings.rebuild, settings.tolerance, settings.layout};
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
     if (settings.hit_auto) choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
+    // Peeling captures pixel centres.
+    if (settings.hit_auto && choice.layout.builder == BuilderKind::peel) choice.hit = HitTest::planar;
     return choice;
 }
 
@@ -143,7 +146,7 @@ void Renderer::Impl::prepare_cubes() {
     hit = choice.hit;
     if (cubes && cubes->choice() == choice) return;
     cubes.reset();  // first, so that both never live at once
-    cubes = std::make_unique<SceneCubes>(device, assembly, choice);
+    cubes = std::make_unique<SceneCubes>(device, assembly, choice, smallest_scales(assembly, world_matrices(*moment)));
 }
 
 void Renderer::Impl::prepare_maps() {
@@ -182,7 +185,12 @@ void Renderer::Impl::prepare_frame() {
     // Planar hits know a surface to about a voxel: a ray counts from beyond the reach of its own surface's samples,
     // which accept hits up to 0.7 voxels beside them. Measured against the reference (docs/accuracy.md): 1.0 and 1.5
     // lose contact shadows and nothing is gained.
-    frame.surface_offset = settings.tracer == Tracer::ldc && hit == HitTest::planar ? 0.7f : 0;
+    // Within the tolerance of a sample a hit may lie by that and by what the surface rises over half a pixel either
+    // way, which is at most 0.58 voxels along its normal.
+    const bool traces = settings.tracer == Tracer::ldc;
+    frame.surface_offset = !traces ? 0 : hit == HitTest::planar ? 0.7f : hit == HitTest::tolerance ? 0.6f : 0;
+    frame.tolerance = traces && hit == HitTest::tolerance ? settings.tolerance : 0;
+    frame.block = settings.layout.block;
     frame.spp = cubemap ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.last_level = last_level;
     commands.upload(view.frame, std::span<const Frame>(&frame, 1));
@@ -258,28 +266,23 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     const PathLevel& level = queues.level(p.level);
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
     // Without cubes their bindings still need buffers; the shader does not read them then.
-    const Cubes& c = cubes->cubes();
-    const auto or_any = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
-    commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
-                          surface_bindings(scene, view.frame,
-                                           {{"top_table", or_any(c.top_table)},
-                                            {"node_table", or_any(c.node_table)},
-                                            {"voxel_table", or_any(c.voxel_table)},
-                                            {"samples", or_any(c.samples)},
-                                            {"sample_ids", or_any(c.sample_ids)},
-                                            {"instance_boxes", scene.instances.boxes()},
-                                            {"instance_cubes", scene.instances.cubes()},
-                                            {"rays", level.rays},
-                                            {"states", level.states},
-                                            {"hits", level.hits},
-                                            {"nodes", level.nodes},
-                                            {"queue", queues.counters()},
-                                            {"lights", scene.lights}}),
-                          p, queues.groups(), p.level * 12);
+    const std::vector<Binding> others = surface_bindings(scene, view.frame,
+                                                         {{"instance_boxes", scene.instances.boxes()},
+                                                          {"instance_cubes", scene.instances.cubes()},
+                                                          {"rays", level.rays},
+                                                          {"states", level.states},
+                                                          {"hits", level.hits},
+                                                          {"nodes", level.nodes},
+                                                          {"queue", queues.counters()},
+                                                          {"lights", scene.lights}});
+    const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.materials, others);
+    commands.run_indirect(device.pass("shadow", {shader_constant(hit), traced && scene.has_glass,
+                                                 shader_constant(settings.layout.traversal)}),
+                          bindings, p, queues.groups(), p.level * 12);
 }
 
-/// Traces and scatters the levels of the tree of rays, and shades each as soon as it is known that the next one found room:
-/// where one did not, all that follows is left out, for the band is done again.
+/// Traces and scatters the levels of the tree of rays, and shades each as soon as it is known that the next one found
+/// room: where one did not, all that follows is left out, for the band is done again.
 void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
     for (uint32_t i = 0; i <= last_level; i++) {
         const LevelParams p = level_params(i, sample, first_row);
@@ -289,7 +292,7 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
             const PathLevel& level = queues.level(i);
             record_trace(commands, device, traced(),
                          {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
-                         level.hits, hit, false, Edges::single);
+                         level.hits, {hit, settings.tolerance, false, Edges::single});
         }
         record_scatter(p);
     }
@@ -366,14 +369,13 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
         record_primary(commands, device, scene, view, queues, p);
-        commands.run(
-            device.pass("aov"),
-            surface_bindings(scene, view.frame,
-                             {{"rays", queues.level(0).rays},
-                              {"hits", queues.level(0).hits},
-                              {"aovs", aov_buffer},
-                              {"triangle_ids", scene.triangle_ids}}),
-            p, groups_for(p.capacity, 64));
+        commands.run(device.pass("aov"),
+                     surface_bindings(scene, view.frame,
+                                      {{"rays", queues.level(0).rays},
+                                       {"hits", queues.level(0).hits},
+                                       {"aovs", aov_buffer},
+                                       {"triangle_ids", scene.triangle_ids}}),
+                     p, groups_for(p.capacity, 64));
     }
     commands.submit();
     const auto data = commands.download<glm::vec4>(aov_buffer, pixels * 4);
@@ -403,6 +405,7 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.timed = device.timestamp_period() > 0;
     stats.redone = redone;
     stats.hit = hit;
+    stats.choice = cubes->choice();
     stats.scene_bytes = scene.bytes();
     stats.frame_bytes = queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes();
     stats.tracer = settings.tracer;

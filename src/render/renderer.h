@@ -25,6 +25,8 @@ struct RenderSettings : PictureSettings {
     bool rebuild = false;  ///< for measuring: every cube anew in every frame, as if everything changed its shape
     bool hit_auto = true;  ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;
+    float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
+    CubeLayout layout;         ///< builder, traversal and what belongs to them
     Tracer tracer = Tracer::ldc;
     uint32_t repeat = 1;  ///< frames to render; times are medians over them
 };
@@ -41,12 +43,13 @@ struct RenderStats {
     double maps_ms = 0;        ///< of the passes of probes and shadow maps
     bool timed = false;        ///< false: the device has no timestamps
     SceneCubes::Stats cubes;
-    std::vector<LdcBody> bodies;   ///< with the grids of their cubes
-    std::vector<uint32_t> shown;   ///< how many instances show each of them
-    uint32_t rebuilt = 0;          ///< cubes that were built for this frame
-    uint32_t moved = 0;            ///< instances that stand elsewhere than in the frame before
+    std::vector<LdcBody> bodies;  ///< with the grids of their cubes
+    std::vector<uint32_t> shown;  ///< how many instances show each of them
+    uint32_t rebuilt = 0;         ///< cubes that were built for this frame
+    uint32_t moved = 0;           ///< instances that stand elsewhere than in the frame before
     uint64_t scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
     HitTest hit = HitTest::exact;
+    CubeChoice choice;  ///< of the cubes
     CubeMaps::Stats maps;
     uint32_t redone = 0;  ///< how often something did not fit and was done again
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+
 namespace peelray {
 namespace {
 
@@ -22,12 +24,25 @@ uint32_t in_sixteens(float voxels) {
     return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
 }
 
-std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice) {
+/// By voxel a sample's depth is stored within two voxels of the voxel that it is filed under.
+constexpr float kFarthestByVoxel = 2;
+
+std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice,
+                                  const std::vector<float>& scales) {
     const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice);
     std::vector<CubeBody> bodies;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
-        bodies.push_back({body.first_triangle, body.triangles, resolutions[i], body.lower, body.upper});
+        bodies.push_back({body.first_triangle, body.triangles, resolutions[i], body.lower, body.upper, 0});
+        if (choice.hit != HitTest::tolerance) continue;
+        bodies.back().tolerance = choice.tolerance / scales[i];
+        const float voxel = make_grid(body.lower, body.upper, resolutions[i]).voxel;
+        if (!choice.layout.by_pixel() && bodies.back().tolerance > kFarthestByVoxel * voxel)
+            fail(
+                "a tolerance of {} is more than {} voxels of a cube, which --traversal voxel cannot hold: choose at "
+                "most "
+                "{:.3g} (--tolerance), a smaller --ldc, or --traversal two-level",
+                choice.tolerance, kFarthestByVoxel, kFarthestByVoxel * voxel * scales[i]);
     }
     return bodies;
 }
@@ -71,11 +86,12 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
     return resolutions;
 }
 
-SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice)
+SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice,
+                       const std::vector<float>& scales)
     : device_(device),
       choice_(choice),
       fixed_(choice.rebuild ? 0 : assembly.fixed),
-      cubes_(device, cube_bodies(assembly, choice), sampling_for(choice.hit)) {}
+      cubes_(device, cube_bodies(assembly, choice, scales), sampling_for(choice.hit), choice.layout) {}
 
 bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangles) {
     if (fixed_built_) return false;

@@ -14,7 +14,9 @@ namespace peelray {
 struct CubeChoice {
     uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
     HitTest hit = HitTest::exact;
-    bool rebuild = false;  ///< every cube anew for every frame, as if everything deformed
+    bool rebuild = false;      ///< every cube anew for every frame, as if everything deformed
+    float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
+    CubeLayout layout;
     bool operator==(const CubeChoice&) const = default;
 };
 
@@ -25,7 +27,9 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
 class SceneCubes {
   public:
     /// Makes room for the cubes; nothing is built yet.
-    SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice);
+    /// `scales`: of each body the smallest scale at which an instance shows it. Throws Error where the choice is
+    /// impossible.
+    SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice, const std::vector<float>& scales);
 
     const Cubes& cubes() const { return cubes_; }
     const CubeChoice& choice() const { return choice_; }

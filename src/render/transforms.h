@@ -1,6 +1,10 @@
 // An assembly's instances as the GPU takes them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "params.h"
 #include "scene/assembly.h"
 
@@ -25,6 +29,18 @@ inline std::vector<GpuTransform> transforms_of(const std::vector<Assembly::Insta
         transforms.push_back(
             gpu_transform(instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset));
     return transforms;
+}
+
+/// Of each body the smallest scale at which an instance shows it (of transforms without shear); 1 where none does.
+inline std::vector<float> smallest_scales(const Assembly& assembly, const std::vector<glm::mat4>& worlds) {
+    std::vector<float> scales(assembly.bodies.size(), std::numeric_limits<float>::infinity());
+    const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, worlds);
+    for (size_t i = 0; i < transforms.size(); i++) {
+        float& scale = scales[assembly.instances[i].body];
+        for (int k = 0; k < 3; k++) scale = std::min(scale, glm::length(transforms[i].linear[k]));
+    }
+    for (float& scale : scales) scale = std::isinf(scale) || scale <= 0 ? 1 : scale;
+    return scales;
 }
 
 }  // namespace peelray

@@ -124,8 +124,8 @@ class InstancesTest : public DeviceTest {
         Buffer skip_buffer;
         if (!skip.empty()) skip_buffer = upload(skip);
         record_trace(commands(), device(), world.traced(),
-                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hits, HitTest::exact,
-                     any_hit);
+                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hits,
+                     {HitTest::exact, 0, any_hit});
         record_file_hits(commands(), device(), world.instances, ids, hits, uint32_t(rays.size()), file_hits);
         commands().submit();
         return download<FileHit>(file_hits, rays.size());

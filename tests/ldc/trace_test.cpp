@@ -22,11 +22,12 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 /// A body with its cube on the device, ready to trace.
 class TracedBody {
   public:
-    TracedBody(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test)
+    TracedBody(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test,
+               const CubeLayout& layout = {})
         : device_(device),
           commands_(device),
           cube_(device, commands_, geometry.positions, geometry.triangles, geometry.lower, geometry.upper, resolution,
-                sampling_for(test)),
+                sampling_for(test), layout),
           test_(test) {}
 
     std::vector<Hit> trace(const std::vector<Ray>& rays, bool any_hit = false, const std::vector<uint32_t>& skip = {}) {
@@ -41,8 +42,8 @@ class TracedBody {
             commands_.upload(skip_buffer, std::span<const SurfaceId>(own));
         }
         record_trace(commands_, device_, cube_.traced(),
-                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hit_buffer, test_,
-                     any_hit);
+                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hit_buffer,
+                     {test_, 0.001f, any_hit});
         commands_.submit();
         return commands_.download<Hit>(hit_buffer, rays.size());
     }

@@ -22,7 +22,7 @@ struct MovedScene {
           which(animation),
           assembly(assemble(source, motion_of(source, animation))),
           gpu(device, source, assembly, color_environment(glm::vec3(1))),
-          cubes(device, assembly, choice),
+          cubes(device, assembly, choice, std::vector<float>(assembly.bodies.size(), 1.0f)),
           commands(device) {}
 
     /// Vertices, bounds and instances of the moment.
@@ -62,13 +62,12 @@ struct MovedScene {
                 if (sign < 0) std::swap(corners.y, corners.z);
                 for (int k = 0; k < 3; k++) {
                     const uint32_t other = geometry.triangles[id][k];
-                    const glm::dvec3 p =
-                        m * glm::dvec3(positions[corners[k]]) + glm::dvec3(instance.to_world.position);
+                    const glm::dvec3 p = m * glm::dvec3(positions[corners[k]]) + glm::dvec3(instance.to_world.position);
                     worst.position = std::max(worst.position, glm::length(p - glm::dvec3(geometry.positions[other])));
                     const glm::dvec3 n = cofactors * glm::dvec3(normals[corners[k]]);
                     if (glm::length(n) > 1e-12)
-                        worst.normal = std::max(
-                            worst.normal, glm::length(glm::normalize(n) - glm::dvec3(geometry.normals[other])));
+                        worst.normal = std::max(worst.normal,
+                                                glm::length(glm::normalize(n) - glm::dvec3(geometry.normals[other])));
                 }
             }
         }
