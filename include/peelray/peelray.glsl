@@ -171,7 +171,7 @@ bool peelrayTestDepth(PeelrayLocal r, vec3 o, vec3 d, vec3 inv, float w, out flo
     const vec2 a = -o.xy * inv.xy, b = (1.0 - o.xy) * inv.xy;
     const vec2 enters = min(a, b), leaves = max(a, b);
     const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_best, min(leaves.x, leaves.y));
-    s = clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
+    s = abs(d.z) < 1e-12 ? s_in : clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
     return s_in <= s_out && abs(o.z + s * d.z - w) <= r.tolerance && s > r.s_min && s < r.s_best;
 }
 

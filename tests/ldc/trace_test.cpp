@@ -10,51 +10,15 @@
 #include "../gpu/device_fixture.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
-#include "single_cube.h"
+#include "traced_body.h"
 
 namespace peelray {
 namespace {
 
 using test::oracle_ray;
 using test::RayKind;
+using test::TracedBody;
 const float kInfinity = std::numeric_limits<float>::infinity();
-
-/// A body with its cube on the device, ready to trace.
-class TracedBody {
-  public:
-    TracedBody(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test,
-               const CubeLayout& layout = {})
-        : device_(device),
-          commands_(device),
-          cube_(device, commands_, geometry.positions, geometry.triangles, geometry.lower, geometry.upper, resolution,
-                sampling_for(test), layout),
-          test_(test) {}
-
-    std::vector<Hit> trace(const std::vector<Ray>& rays, bool any_hit = false, const std::vector<uint32_t>& skip = {}) {
-        Buffer ray_buffer(device_, "rays", rays.size() * sizeof(Ray)),
-            hit_buffer(device_, "hits", rays.size() * sizeof(Hit));
-        commands_.upload(ray_buffer, std::span<const Ray>(rays));
-        Buffer skip_buffer;
-        if (!skip.empty()) {
-            std::vector<SurfaceId> own;
-            for (uint32_t triangle : skip) own.push_back({0, triangle});
-            skip_buffer = Buffer(device_, "skip", own.size() * sizeof(SurfaceId));
-            commands_.upload(skip_buffer, std::span<const SurfaceId>(own));
-        }
-        record_trace(commands_, device_, cube_.traced(),
-                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hit_buffer,
-                     {test_, 0.001f, any_hit});
-        commands_.submit();
-        return commands_.download<Hit>(hit_buffer, rays.size());
-    }
-    const CubeGrid& grid() const { return cube_.grid; }
-
-  private:
-    Device& device_;
-    Commands commands_;
-    test::SingleCube cube_;
-    HitTest test_;
-};
 
 /// Runs `body(i)` for all i on all cores.
 template <typename Body>
