@@ -64,6 +64,30 @@ float longest_side(const Box& box) {
     return std::max({size.x, size.y, size.z});
 }
 
+/// Times and the last frame's stats of what was measured.
+void summarise(const std::vector<MadePicture>& pictures, BenchRow& row) {
+    std::vector<double> a, b, frame;
+    std::vector<std::pair<std::string, std::vector<double>>> passes;
+    for (const MadePicture& picture : pictures) {
+        for (const RenderStats::FrameTime& time : picture.times) {
+            a.push_back(time.build_ms);
+            b.push_back(time.frame_ms - time.build_ms);
+            frame.push_back(time.frame_ms);
+        }
+        for (const Json& pass : picture.stats["passes"]) {
+            const auto name = pass["name"].get<std::string>();
+            auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
+            if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
+            found->second.push_back(pass["ms"].get<double>());
+        }
+    }
+    row.a = spread_of(a);
+    row.b = spread_of(b);
+    row.frame = spread_of(frame);
+    for (const auto& [name, ms] : passes) row.passes.push_back({name, spread_of(ms).median});
+    row.stats = pictures.back().stats;
+}
+
 /// The box of what a built-in scene is about: the object of most triangles.
 Box largest_object(const Geometry& geometry) {
     const auto object = std::max_element(geometry.objects.begin(), geometry.objects.end(),
@@ -84,6 +108,9 @@ class BenchScene {
     double tolerance() const { return tolerance_; }
     /// Fills in what was measured. Throws Error where that cannot be done, Interrupted.
     void measure(BenchRow& row, const std::function<void(double)>& progress);
+    /// After an Error: what follows gets a device that is as new. Throws Error if the validation layers said anything,
+    /// which must not be passed over.
+    void recover();
 
   private:
     std::vector<MadePicture> render(const RenderSettings& settings, const std::function<void(double)>& progress);
@@ -166,40 +193,17 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     RenderSettings settings = settings_of(arguments_);
     settings.repeat = repeat_;
     if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
-    std::vector<MadePicture> pictures;
-    try {
-        pictures = render(settings, progress);
-    } catch (const Interrupted&) {
-        throw;
-    } catch (const Error&) {
-        // What the validation layers say is no reason to go on; anything else is, with a device that is as new.
-        maker_->check_validation();
-        maker_.reset();
-        throw;
-    }
-    std::vector<double> a, b, frame;
-    std::vector<std::pair<std::string, std::vector<double>>> passes;
-    for (const MadePicture& picture : pictures) {
-        for (const RenderStats::FrameTime& time : picture.times) {
-            a.push_back(time.build_ms);
-            b.push_back(time.frame_ms - time.build_ms);
-            frame.push_back(time.frame_ms);
-        }
-        for (const Json& pass : picture.stats["passes"]) {
-            const auto name = pass["name"].get<std::string>();
-            auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
-            if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
-            found->second.push_back(pass["ms"].get<double>());
-        }
-    }
-    row.a = spread_of(a);
-    row.b = spread_of(b);
-    row.frame = spread_of(frame);
-    for (const auto& [name, ms] : passes) row.passes.push_back({name, spread_of(ms).median});
-    row.stats = pictures.back().stats;
+    summarise(render(settings, progress), row);
     row.object_pixels = object_pixels(row.stats["ldc"]["cubes"]);
     row.layers = depth_complexity(row.stats);
 }
+
+void BenchScene::recover() {
+    if (maker_) maker_->check_validation();
+    maker_.reset();
+}
+
+std::vector<std::pair<std::string, std::vector<double>>> passes;
 
 /// A run of `bench --paper`.
 class PaperBench {
@@ -302,6 +306,7 @@ void PaperBench::measure(const PaperScene& paper, Progress& bar) {
                     throw;
                 } catch (const Error& error) {
                     row.left_out = error.what();
+                    scene->recover();
                 }
             }
             add(row);
