@@ -203,8 +203,6 @@ void BenchScene::recover() {
     maker_.reset();
 }
 
-std::vector<std::pair<std::string, std::vector<double>>> passes;
-
 /// A run of `bench --paper`.
 class PaperBench {
   public:
