@@ -336,6 +336,68 @@ void add_trace(CLI::App& program, TraceArguments& a) {
         "  python3 -c \"import numpy as n; print(n.load('hits.npy'))\"");
 }
 
+void add_bench(CLI::App& program, BenchArguments& a) {
+    CLI::App& app = *program.add_subcommand("bench", "Measure: the paper's Table 1 again (--paper)");
+    app.add_flag("--paper", a.paper,
+                 "time its five scenes: (A) building the cubes, all anew for every frame, (B) the rest of the frame");
+    app.add_option(
+           "--models", a.models,
+           "folder with bunny_7k.off, car2.glb, chinesedragon.gltf, igea.ply and tiny.glb, or with folders meshes "
+           "and skinned that hold them; for what is missing a built-in scene stands in, a blob of as many triangles or, for "
+           "tiny.glb, the walker")
+        ->type_name("FOLDER")
+        ->default_str("models");
+    add_parsed(app, "--scenes", a.scenes, parse_paper_scenes, "a list out of bunny,car,dragon,igea,tiny, each once",
+               "a list out of bunny,car,dragon,igea,tiny; default: all")
+        ->type_name("LIST");
+    add_parsed(app, "--size", a.size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
+               "width and height of the picture")
+        ->type_name("WIDTHxHEIGHT")
+        ->default_str("1280x1024");
+    add_number<uint32_t>(app, "--repeat", a.repeat, "frames to measure, after some that warm up; times are medians")
+        ->default_str("20");
+
+    const char* group =
+        "What is measured (default: the paper's system, peel with two-level and tolerance, and ours, compute with "
+        "voxel and exact or planar; with a list or --all: all combinations)";
+    add_parsed(app, "--builders", a.builders, parse_builders, "a list out of peel,abuffer,compute, each once",
+               "a list out of peel,abuffer,compute")
+        ->type_name("LIST")
+        ->group(group);
+    add_parsed(app, "--traversals", a.traversals, parse_traversals, "a list out of two-level,mipmap,voxel, each once",
+               "a list out of two-level,mipmap,voxel")
+        ->type_name("LIST")
+        ->group(group);
+    add_parsed(app, "--hits", a.hits, parse_hit_tests, "a list out of tolerance,planar,exact, each once",
+               "a list out of tolerance,planar,exact")
+        ->type_name("LIST")
+        ->group(group);
+    app.add_flag("--all", a.all, "every combination; what cannot be done is left out, with the reason")->group(group);
+    add_parsed(app, "--ldc", a.ldc, parse_resolutions, "a list of numbers such as 512,1024, each once",
+               "resolutions of the LDIs, 16 to 2048")
+        ->type_name("LIST")
+        ->default_str("512,1024")
+        ->group(group);
+    add_parsed(app, "--block", a.block, parse_block, "a number of pixels such as 8 or 8x4",
+               "pixels per block of two-level")
+        ->type_name("N|NxM")
+        ->default_str("8")
+        ->group(group);
+    add_number<double>(app, "--tolerance", a.tolerance,
+                       "distance of a hit of tolerance, world units; default: 0.001 if the scene were two units long")
+        ->group(group);
+    const char* output = "More output";
+    app.add_option("--out", a.output, "also write everything as JSON, after every row")
+        ->type_name("FILE.json")
+        ->group(output);
+    app.add_option("--markdown", a.markdown, "also write the table to a file")->type_name("FILE.md")->group(output);
+    add_device_options(app, a.device);
+    app.footer(
+        "Examples:\n"
+        "  peelray bench --paper --models models --out bench.json\n"
+        "  peelray bench --paper --scenes bunny --builders compute --traversals voxel --ldc 256,512,1024");
+}
+
 std::vector<std::string> given_options(const CLI::App& app) {
     static const std::vector<std::string> own = {"--output", "--tracers", "--hit",  "--picture",
                                                  "--json",   "--strip",   "--worst"};

@@ -10,6 +10,7 @@ namespace peelray {
 void add_render(CLI::App& program, RenderArguments& arguments);
 CLI::App& add_compare(CLI::App& program, CompareArguments& arguments);
 void add_trace(CLI::App& program, TraceArguments& arguments);
+void add_bench(CLI::App& program, BenchArguments& arguments);
 
 /// The options of a picture that were given to `compare`, as words that `render` takes as well.
 std::vector<std::string> given_options(const CLI::App& compare);

@@ -38,6 +38,10 @@ std::string PictureMaker::renderer_name(const std::string& tracer) {
 #endif
 }
 
+void PictureMaker::check_validation() const {
+    if (device_) device_->check_validation();
+}
+
 MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings, const Moment& moment,
                                const std::function<void(double)>& progress) {
     if (moment.time) move_to(scene_, arguments_, *moment.time);
@@ -85,6 +89,7 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     const RenderStats& s = result.stats;
     made.stats = render_stats(*device_, result, scene_.triangles, scene_.bounds);
     made.device = device_->info().name;
+    made.times = s.frames;
     if (s.cubes.bodies)
         made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
                                    s.cubes.resolution, name_of(s.hit));

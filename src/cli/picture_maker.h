@@ -15,6 +15,9 @@ struct MadePicture {
     nlohmann::ordered_json stats;  ///< as the stats file has it
     std::string device;            ///< its name
     std::string summary;           ///< cube and times, for a reader of the terminal; may be empty
+
+    /// Of each frame that was measured; empty: not by a GPU.
+    std::vector<RenderStats::FrameTime> times;
 };
 
 /// When and from where a picture is seen.
@@ -37,6 +40,9 @@ class PictureMaker {
 
     /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
     std::string renderer_name(const std::string& tracer);
+
+    /// Throws Error with the validation layers' first message, if there is any.
+    void check_validation() const;
 
   private:
     Device& device();

@@ -24,7 +24,7 @@ std::string describe(const CLI::ParseError& error, const CLI::App& program) {
                                      [](const std::string& text) { return text.size() > 1 && text[0] == '-'; });
     if (option != rest.end()) return fmt::format("unknown option '{}'", *option);
     if (chosen.empty()) {
-        const char* commands = "render, compare, trace, info or devices";
+        const char* commands = "render, compare, trace, bench, info or devices";
         return rest.empty() ? fmt::format("name a command: {}", commands)
                             : fmt::format("unknown command '{}': there are {}", rest.front(), commands);
     }
@@ -118,17 +118,18 @@ int run_program(int argc, const char* const* argv) {
     RenderArguments render;
     TraceArguments trace;
     CompareArguments compare;
+    BenchArguments bench;
     std::string info_scene;
     add_render(program, render);
     CLI::App& compare_options = add_compare(program, compare);
     add_trace(program, trace);
+    add_bench(program, bench);
     CLI::App* info = program.add_subcommand("info", "Print what a scene holds");
     info->add_option("SCENE", info_scene, kSceneHelp)->required()->type_name("");
     info->footer(builtin_list());
     program.add_subcommand("devices", "List the Vulkan devices (for --device)")->footer("");
-    CLI::App* later[] = {program.add_subcommand("bench", "Measure (not built into this version)"),
-                         program.add_subcommand("view", "Look around interactively (not built into this version)")};
-    for (CLI::App* app : later) app->allow_extras()->footer("");
+    CLI::App* view = program.add_subcommand("view", "Look around interactively (not built into this version)");
+    view->allow_extras()->footer("");
 
     try {
         program.parse(argc, argv);
@@ -149,12 +150,11 @@ int run_program(int argc, const char* const* argv) {
             run_compare(compare);
         }
         if (program.got_subcommand("trace")) run_trace(trace);
+        if (program.got_subcommand("bench")) run_bench(bench);
         if (program.got_subcommand("info")) run_info(info_scene);
         if (program.got_subcommand("devices")) run_devices();
-        for (CLI::App* app : later)
-            if (app->parsed())
-                fail("'{}' is not built into this version: there are render, compare, trace, info and devices",
-                     app->get_name());
+        if (view->parsed())
+            fail("'view' is not built into this version: there are render, compare, trace, bench, info and devices");
         if (std::fflush(stdout) != 0) fail("cannot write to the standard output: {}", std::strerror(errno));
     } catch (const Error& error) {
         fmt::print(stderr, "peelray: {}\n", one_line(error.what()));

@@ -94,11 +94,25 @@ struct TraceArguments {
     DeviceArguments device;
 };
 
+/// Lists that are empty stand for the default: see `run_bench`.
+struct BenchArguments {
+    bool paper = false, all = false;
+    std::vector<std::string> scenes, builders, traversals, hits;
+    std::vector<uint32_t> ldc = {512, 1024};
+    glm::uvec2 block{8}, size{1280, 1024};
+    std::optional<double> tolerance;  ///< none: in proportion to the scene
+    uint32_t repeat = 20;
+    std::optional<std::filesystem::path> models;  ///< none: the folder "models", if there is one
+    std::filesystem::path output, markdown;
+    DeviceArguments device;
+};
+
 void run_render(const RenderArguments& arguments);
 /// `run_render` where `is_sequence()`.
 void run_sequence(const RenderArguments& arguments);
 void run_compare(const CompareArguments& arguments);
 void run_trace(const TraceArguments& arguments);
+void run_bench(const BenchArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "cli/paper_table.h"
+
 namespace peelray {
 namespace {
 
@@ -103,6 +105,49 @@ std::optional<std::vector<std::string>> parse_tracers(const std::string& text) {
 
 std::optional<std::vector<std::string>> parse_hits(const std::string& text) {
     return parse_distinct(text, {"auto", "exact", "planar", "tolerance"});
+}
+
+std::optional<std::vector<std::string>> parse_paper_scenes(const std::string& text) {
+    std::vector<std::string> names;
+    for (const PaperScene& scene : paper_scenes()) names.emplace_back(scene.name);
+    return parse_distinct(text, names);
+}
+
+std::optional<std::vector<std::string>> parse_builders(const std::string& text) {
+    return parse_distinct(text, builder_names());
+}
+
+std::optional<std::vector<std::string>> parse_traversals(const std::string& text) {
+    return parse_distinct(text, traversal_names());
+}
+
+std::optional<std::vector<std::string>> parse_hit_tests(const std::string& text) {
+    return parse_distinct(text, hit_test_names());
+}
+
+std::optional<std::vector<uint32_t>> parse_resolutions(const std::string& text) {
+    std::vector<uint32_t> numbers;
+    for (const std::string& part : split(text)) {
+        const auto number = parse_number<uint32_t>(part);
+        if (!number || std::find(numbers.begin(), numbers.end(), *number) != numbers.end()) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+const std::vector<std::string>& builder_names() {
+    static const std::vector<std::string> names = {"peel", "abuffer", "compute"};
+    return names;
+}
+
+const std::vector<std::string>& traversal_names() {
+    static const std::vector<std::string> names = {"two-level", "mipmap", "voxel"};
+    return names;
+}
+
+const std::vector<std::string>& hit_test_names() {
+    static const std::vector<std::string> names = {"tolerance", "planar", "exact"};
+    return names;
 }
 
 const std::vector<std::string>& effect_names() {

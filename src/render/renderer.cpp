@@ -438,8 +438,13 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
         });
         // The first of several frames warms up: pipelines, memory, clocks.
         if (repeat > 1 && i == 0) continue;
-        for (const auto& row : r.times.rows()) samples[row.name].push_back(row.ms);
+        double build_ms = 0;
+        for (const auto& row : r.times.rows()) {
+            samples[row.name].push_back(row.ms);
+            if (row.name.starts_with("build/")) build_ms += row.ms;
+        }
         frames.push_back(r.frame_ms);
+        result.stats.frames.push_back({r.frame_ms, build_ms});
     }
     RenderStats& stats = result.stats;
     for (const auto& row : r.times.rows()) {

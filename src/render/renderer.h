@@ -38,6 +38,10 @@ struct RenderStats {
         double ms;  ///< GPU time; median over the repeated frames; summed over bands, samples and levels of a frame
     };
     std::vector<Time> passes;  ///< in order of their first run
+    struct FrameTime {
+        double frame_ms, build_ms;
+    };
+    std::vector<FrameTime> frames;  ///< each of those that the medians are taken of, in order
     double frame_ms = 0;       ///< GPU time from first to last pass, median over the frames
     double build_ms = 0;       ///< of the cube's passes
     double maps_ms = 0;        ///< of the passes of probes and shadow maps
