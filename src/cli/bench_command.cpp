@@ -140,10 +140,11 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const s
     if (!p.animation.empty()) p.time = 0;
     scene_ = prepare_scene(p);
     if (p.time) duration_ = find_animations(scene_->scene, p.animation).front()->duration;
-    // Meshes come in metres, inches or what their scanner had: the paper's 0.001 is taken for a scene of two units.
-    tolerance_ = a.tolerance.value_or(0.001 * 0.5 * longest_side(scene_->bounds));
-    p.tracing.tolerance = tolerance_;
     object_side_ = longest_side(file ? scene_->framed : largest_object(scene_->geometry()));
+    // Meshes come in metres, inches or what their scanner had: the paper's 0.001 is taken for an object of one unit, of
+    // which it is a pixel of 1024 (docs/paper.md).
+    tolerance_ = a.tolerance.value_or(0.001 * object_side_);
+    p.tracing.tolerance = tolerance_;
 }
 
 /// The picture of one moment with the times of `settings.repeat` frames, those that warm up left out.
@@ -174,8 +175,7 @@ std::vector<MadePicture> BenchScene::render(const RenderSettings& settings,
     return pictures;
 }
 
-/// Pixels along the longest side of what stands on the floor, in the cube that holds most triangles. The resolution
-/// that was asked for is that of the floor's cube, which is three times as long.
+/// Pixels along the longest side of what stands on the floor, in the cube that holds most triangles.
 uint32_t BenchScene::object_pixels(const Json& cubes) const {
     const auto most = std::max_element(cubes.begin(), cubes.end(), [](const Json& a, const Json& b) {
         return a["triangles"].get<uint64_t>() < b["triangles"].get<uint64_t>();
@@ -192,6 +192,7 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     tracing.check();
     RenderSettings settings = settings_of(arguments_);
     settings.repeat = repeat_;
+    settings.ldc_each = true;
     if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
     summarise(render(settings, progress), row);
     row.object_pixels = object_pixels(row.stats["ldc"]["cubes"]);

@@ -343,7 +343,8 @@ void add_bench(CLI::App& program, BenchArguments& a) {
     app.add_option(
            "--models", a.models,
            "folder with bunny_7k.off, car2.glb, chinesedragon.gltf, igea.ply and tiny.glb, or with folders meshes "
-           "and skinned that hold them; for what is missing a built-in scene stands in, a blob of as many triangles or, for "
+           "and skinned that hold them; for what is missing a built-in scene stands in, a blob of as many triangles "
+           "or, for "
            "tiny.glb, the walker")
         ->type_name("FOLDER")
         ->default_str("models");
@@ -384,7 +385,7 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         ->default_str("8")
         ->group(group);
     add_number<double>(app, "--tolerance", a.tolerance,
-                       "distance of a hit of tolerance, world units; default: 0.001 if the scene were two units long")
+                       "distance of a hit of tolerance, world units; default: 0.001 if the object were one unit long")
         ->group(group);
     const char* output = "More output";
     app.add_option("--out", a.output, "also write everything as JSON, after every row")

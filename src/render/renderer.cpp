@@ -45,7 +45,8 @@ void describe_view(Frame& frame, const View& view) {
 }  // namespace
 
 CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
-    CubeChoice choice{settings.ldc, settings.hit, settings.rebuild, settings.tolerance, settings.layout};
+    CubeChoice choice{settings.ldc,      settings.hit,       settings.rebuild,
+                      settings.ldc_each, settings.tolerance, settings.layout};
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
     if (settings.hit_auto) choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
     // Peeling captures pixel centres.

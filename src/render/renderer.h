@@ -21,9 +21,10 @@ enum class Tracer : uint8_t {
 
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings {
-    uint32_t ldc = 0;      ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
-    bool rebuild = false;  ///< for measuring: every cube anew in every frame, as if everything changed its shape
-    bool hit_auto = true;  ///< choose the hit test by the number of triangles
+    uint32_t ldc = 0;       ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
+    bool ldc_each = false;  ///< for measuring: `ldc` voxels for every body, not only for the largest
+    bool rebuild = false;   ///< for measuring: every cube anew in every frame, as if everything changed its shape
+    bool hit_auto = true;   ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;         ///< builder, traversal and what belongs to them
@@ -42,10 +43,10 @@ struct RenderStats {
         double frame_ms, build_ms;
     };
     std::vector<FrameTime> frames;  ///< each of those that the medians are taken of, in order
-    double frame_ms = 0;       ///< GPU time from first to last pass, median over the frames
-    double build_ms = 0;       ///< of the cube's passes
-    double maps_ms = 0;        ///< of the passes of probes and shadow maps
-    bool timed = false;        ///< false: the device has no timestamps
+    double frame_ms = 0;            ///< GPU time from first to last pass, median over the frames
+    double build_ms = 0;            ///< of the cube's passes
+    double maps_ms = 0;             ///< of the passes of probes and shadow maps
+    bool timed = false;             ///< false: the device has no timestamps
     SceneCubes::Stats cubes;
     std::vector<LdcBody> bodies;  ///< with the grids of their cubes
     std::vector<uint32_t> shown;  ///< how many instances show each of them

@@ -73,7 +73,7 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
     std::vector<uint32_t> resolutions;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
-        const float share = longest_side(body) / largest;
+        const float share = choice.ldc_each ? 1 : longest_side(body) / largest;
         // Of very many small bodies each would get more than it can use.
         const float least = assembly.bodies.size() > kFewBodies ? std::min(kLeast, kFinest * share) : kLeast;
         uint32_t resolution = in_sixteens(n * std::max(share, least));

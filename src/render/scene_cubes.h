@@ -15,6 +15,7 @@ struct CubeChoice {
     uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
     HitTest hit = HitTest::exact;
     bool rebuild = false;      ///< every cube anew for every frame, as if everything deformed
+    bool ldc_each = false;     ///< `ldc` voxels for every body, not only for the largest
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;
     bool operator==(const CubeChoice&) const = default;

@@ -107,7 +107,11 @@ TEST_F(Usage, ImpossibleValues) {
                     {{"--exposure", "65"}, "-64 to 64"},
                     {{"--exposure", "nan"}, "-64 to 64"},
                     {{"--tolerance", "0"}, "above 0"},
-                    {{"--block", "0"}, "1 to 64"},
+                    {{"--block", "0"}, "2 to 32"},
+                    {{"--block", "33x8"}, "2 to 32"},
+                    {{"--depth", "24"}, "16 or 32"},
+                    {{"--depth", "16"}, "--traversal two-level"},
+                    {{"--depth", "16", "--traversal", "mipmap", "--hit", "exact"}, "--hit tolerance"},
                     {{"--background", "-1,0,0"}, "darker than black"},
                     {{"--background", "inf,0,0"}, "finite"},
                     {{"--eye", "nan,0,0"}, "finite"},
@@ -127,12 +131,7 @@ TEST_F(Usage, ImpossibleValues) {
 }
 
 TEST_F(Usage, NotBuiltYet) {
-    expect_each(1, {{{"--builder", "peel"}, "not built into this version: use --builder compute"},
-                    {{"--builder", "abuffer"}, "not built into this version"},
-                    {{"--tracer", "khr"}, "not built into this version: use --tracer ldc"},
-                    {{"--hit", "tolerance"}, "not built into this version"},
-                    {{"--traversal", "mipmap"}, "not built into this version"},
-                    {{"--traversal", "two-level"}, "not built into this version"}});
+    expect_each(1, {{{"--tracer", "khr"}, "not built into this version: use --tracer ldc"}});
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
 }
 
@@ -145,8 +144,8 @@ TEST_F(Usage, CubeMapsTraceNoRays) {
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
-    const Words tracing = {"--builder", "--hit",    "--tolerance", "--traversal", "--block",
-                           "--ldc",     "--tracer", "--device",    "--validate",  "--stats"};
+    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing",
+                           "--depth",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
@@ -161,8 +160,8 @@ TEST_F(Usage, HelpMentionsEveryOption) {
         {{"compare", "--help"},
          {"SCENE", "-o,", "--tracers", "--hit", "--picture", "--json", "--strip", "--worst", "--size", "--env"}},
         {{"bench", "--help"},
-         {"--paper", "--models", "--scenes", "--size", "--repeat", "--builders", "--traversals", "--hits", "--all", "--ldc", "--block",
-          "--tolerance", "--out", "--markdown", "--device", "--validate"}},
+         {"--paper", "--models", "--scenes", "--size", "--repeat", "--builders", "--traversals", "--hits", "--all",
+          "--ldc", "--block", "--tolerance", "--out", "--markdown", "--device", "--validate"}},
         {{"view", "--help"}, {}}};
     for (int i : {1, 2}) pages[size_t(i)].second.insert(pages[size_t(i)].second.end(), tracing.begin(), tracing.end());
     for (const auto& [arguments, words] : pages) {
