@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
 layout(constant_id = 2) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
+layout(constant_id = 3) const uint batch = 0u;      // PEELRAY_ONE, ...
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -31,7 +32,7 @@ const uint SHADOW_LAYERS = 16u;
 vec3 visibility(Ray leaving, SurfaceId from) {
     PeelrayRay ray = PeelrayRay(leaving.origin, leaving.tmin, leaving.direction, leaving.tmax);
     uvec2 skip = uvec2(from.instance, from.triangle);
-    const PeelrayOptions options = PeelrayOptions(!glass, hit_test, traversal, frame[0].tolerance, frame[0].block);
+    const PeelrayOptions options = PeelrayOptions(!glass, hit_test, traversal, frame[0].tolerance, frame[0].block, batch);
     if (!glass) return vec3(peelrayTrace(frame[0].tree, ray, skip, options).triangle == PEELRAY_MISS ? 1.0 : 0.0);
     vec3 share = vec3(1);
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {

@@ -7,6 +7,7 @@ layout(constant_id = 0) const bool any_hit = false;
 layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 2) const bool precise_edges = false;
 layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
+layout(constant_id = 4) const uint batch = 0u;      // PEELRAY_ONE, ...
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
 BUFFER(readonly, 10, Ray, rays)
@@ -23,7 +24,7 @@ void main() {
     const Ray ray = rays[i];
     uvec2 own = uvec2(PEELRAY_MISS);
     if (params.skips != 0u) own = uvec2(skip[i].instance, skip[i].triangle);
-    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block);
+    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch);
     const PeelrayHit hit = peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), own, options);
     vec2 uv = hit.uv;
     if (hit_test != PEELRAY_EXACT && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction);

@@ -44,13 +44,18 @@ const uint PEELRAY_VOXELS = 0u;     ///< by voxel
 const uint PEELRAY_TWO_LEVEL = 1u;  ///< by pixel, with one coarse level
 const uint PEELRAY_MIPMAP = 2u;     ///< by pixel, with a min/max pyramid
 
-/// How rays are traced. Constants, but for the last two.
+// What is done at a time, by pixel (the paper, section 4).
+const uint PEELRAY_ONE = 0u;
+const uint PEELRAY_FOUR_LAYERS = 1u;
+
+/// How rays are traced. Constants, but for tolerance and block.
 struct PeelrayOptions {
     bool any_hit;     ///< some hit instead of the nearest
     uint hit;         ///< PEELRAY_EXACT, ...
     uint traversal;   ///< PEELRAY_VOXELS, ...
     float tolerance;  ///< world units
     uvec2 block;      ///< pixels of a block of the coarse level along u and v
+    uint batch;       ///< by pixel: PEELRAY_ONE, ...; a constant
 };
 
 struct PeelrayHit {
@@ -306,8 +311,6 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     }
 }
 
-#include "peelray/peelray_pixels.glsl"
-
 /// Where a ray enters a box of the hierarchy, as an integer of the same order; PEELRAY_MISS: it does not, before `t_max`.
 uint peelrayEnter(PeelrayBox box, vec3 origin, vec3 inv, float t_min, float t_max) {
     const vec3 a = (box.lower - origin) * inv, b = (box.upper - origin) * inv;
@@ -352,6 +355,24 @@ uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
     return word;
 }
 
+/// Makes t count in lengths of a direction whose largest component is in [1, 2): by `scale`. False: the ray is not valid.
+bool peelrayNormalise(inout PeelrayRay ray, out float scale) {
+    scale = 1.0;
+    const vec3 d_abs = abs(ray.direction);
+    const float d_max = max(d_abs.x, max(d_abs.y, d_abs.z));
+    // Written so that a NaN fails.
+    if (!(d_max > 0.0 && d_max < 3e38 && d_abs.x <= d_max && d_abs.y <= d_max && d_abs.z <= d_max)) return false;
+    const vec3 o_abs = abs(ray.origin);
+    if (!(ray.tmin < ray.tmax && abs(ray.tmin) < 3e38 && o_abs.x < 3e38 && o_abs.y < 3e38 && o_abs.z < 3e38)) return false;
+    scale = peelrayScale(d_max);
+    ray.direction *= scale;
+    ray.tmin /= scale;
+    ray.tmax /= scale;
+    return true;
+}
+
+#include "peelray/peelray_pixels.glsl"
+
 /// First hit of a ray in all instances with tmin < t < tmax. `skip`: instance and triangle that do not count (PEELRAY_MISS: none).
 ///
 /// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
@@ -359,18 +380,8 @@ uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
 PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOptions options) {
     const float infinity = uintBitsToFloat(0x7f800000u);
     const PeelrayHit miss = PeelrayHit(infinity, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
-    const vec3 d_abs = abs(ray.direction);
-    const float d_max = max(d_abs.x, max(d_abs.y, d_abs.z));
-    // Written so that a NaN fails.
-    if (!(d_max > 0.0 && d_max < 3e38 && d_abs.x <= d_max && d_abs.y <= d_max && d_abs.z <= d_max)) return miss;
-    const vec3 o_abs = abs(ray.origin);
-    if (!(ray.tmin < ray.tmax && abs(ray.tmin) < 3e38 && o_abs.x < 3e38 && o_abs.y < 3e38 && o_abs.z < 3e38)) return miss;
-
-    // From here on t counts in lengths of a direction whose largest component is in [1, 2).
-    const float scale = peelrayScale(d_max);
-    ray.direction *= scale;
-    ray.tmin /= scale;
-    ray.tmax /= scale;
+    float scale;
+    if (!peelrayNormalise(ray, scale)) return miss;
     PeelrayHit hit = miss;
     hit.t = ray.tmax;
     const vec3 inv = peelrayInverse(ray.direction);

@@ -71,6 +71,7 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
             {"--traversal", t.traversal},
             {"--block", text(t.block)},
             {"--routing", t.routing},
+            {"--batch", t.batch},
             {"--depth", text(std::optional(t.depth))},
             {"--rebuild", flag(a.rebuild)},
             {"--aov", list(a.aovs, aov_names())}};

@@ -85,6 +85,9 @@ void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
         ->type_name("16|32")
         ->default_str("32")
         ->group(group);
+    add_choice(app, "--batch", tracing.batch, {"none", "layers", "rays"},
+               "for measuring: two-level and mipmap test four layers of a pixel, or trace four rays, at a time")
+        ->group(group);
     add_choice(
         app, "--traversal", tracing.traversal, {"voxel", "mipmap", "two-level"},
         "how rays walk through a cube: all of it at once by voxels, or one image after the other over blocks of pixels "

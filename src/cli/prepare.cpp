@@ -145,6 +145,7 @@ void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
                        : tracing.traversal == "mipmap"  ? Traversal::mipmap
                                                         : Traversal::voxel;
     layout.block = tracing.block;
+    layout.batch = tracing.batch == "layers" ? Batch::layers : tracing.batch == "rays" ? Batch::rays : Batch::none;
     layout.half_depth = tracing.depth == 16;
     layout.builder = tracing.builder == "peel"      ? BuilderKind::peel
                      : tracing.builder == "abuffer" ? BuilderKind::abuffer

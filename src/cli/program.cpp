@@ -54,6 +54,11 @@ void TracingArguments::check() const {
         fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
     if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
         fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
+    if (batch != "none" && traversal == "voxel")
+        fail(
+            "--traversal voxel takes one sample and one ray at a time: use --batch {} with --traversal two-level or "
+            "mipmap",
+            batch);
     if (depth != 16 && depth != 32) fail("a depth of {} bits is not supported: choose 16 or 32 (--depth)", depth);
     if (depth == 16 && traversal == "voxel")
         fail("--traversal voxel has a depth format of its own: use --depth 16 with --traversal two-level or mipmap");

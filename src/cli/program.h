@@ -23,7 +23,8 @@ struct DeviceArguments {
 
 /// Options that choose how rays are traced; shared by render and trace.
 struct TracingArguments {
-    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel", routing = "geometry";
+    std::string tracer = "ldc", builder = "auto", hit = "auto", traversal = "voxel", routing = "geometry",
+                batch = "none";
     double tolerance = 0.001;
     glm::uvec2 block{8};
     uint32_t depth = 32;          ///< bits

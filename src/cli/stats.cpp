@@ -37,23 +37,26 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
 Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
                 const Box& box, const CubeChoice& choice) {
     const bool by_pixel = choice.layout.by_pixel();
-    Json json = {{"n", cubes.resolution},
-                 {"box", box_stats(box.lower, box.upper)},
-                 {"builder", name_of(choice.layout.builder)},
-                 {"traversal", name_of(choice.layout.traversal)},
-                 {"sampling", choice.hit == HitTest::exact    ? "conservative"
-                              : choice.hit == HitTest::planar ? "centre and band"
-                                                              : "centre"},
-                 {"samples", cubes.counts.fragments},
-                 {"layers", cubes.counts.longest},
-                 {"layers_of", by_pixel ? "pixel" : "voxel list"},
-                 {by_pixel ? "occupied_pixels" : "occupied_voxels", cubes.counts.voxels},
-                 {"occupied_nodes", cubes.counts.nodes},
-                 {"bytes", cubes.bytes},
-                 {"build_scratch_bytes", cubes.scratch_bytes},
-                 {"triangles_without_area", cubes.counts.degenerate},
-                 {"triangles_not_finite", cubes.counts.invalid},
-                 {"count", cubes.bodies}};
+    Json json = {
+        {"n", cubes.resolution},
+        {"box", box_stats(box.lower, box.upper)},
+        {"builder", name_of(choice.layout.builder)},
+        {"traversal", name_of(choice.layout.traversal)},
+        {"block",
+         choice.layout.traversal == Traversal::two_level ? Json{choice.layout.block.x, choice.layout.block.y} : Json()},
+        {"sampling", choice.hit == HitTest::exact    ? "conservative"
+                     : choice.hit == HitTest::planar ? "centre and band"
+                                                     : "centre"},
+        {"samples", cubes.counts.fragments},
+        {"layers", cubes.counts.longest},
+        {"layers_of", by_pixel ? "pixel" : "voxel list"},
+        {by_pixel ? "occupied_pixels" : "occupied_voxels", cubes.counts.voxels},
+        {"occupied_nodes", cubes.counts.nodes},
+        {"bytes", cubes.bytes},
+        {"build_scratch_bytes", cubes.scratch_bytes},
+        {"triangles_without_area", cubes.counts.degenerate},
+        {"triangles_not_finite", cubes.counts.invalid},
+        {"count", cubes.bodies}};
     for (size_t i = 0; i < std::min<size_t>(bodies.size(), 64); i++)
         json["cubes"].push_back(body_stats(bodies[i], shown[i], i < cubes.fixed));
     return json;
@@ -96,7 +99,7 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     double trace_ms = 0, shadow_ms = 0;
     for (const auto& pass : s.passes) {
         json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
-        if (pass.name == "trace") trace_ms = pass.ms;
+        if (pass.name.starts_with("trace")) trace_ms = pass.ms;
         if (pass.name == "shadow") shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };

@@ -38,7 +38,7 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
             scene.record(commands, ray_buffer, uint32_t(count), hit_buffer, a.any_hit);
             commands.submit();
             for (const PassTime& time : commands.times())
-                if (i >= warm_up && time.name == "trace") times[i - warm_up] += time.ms;
+                if (i >= warm_up && time.name.starts_with("trace")) times[i - warm_up] += time.ms;
         }
         const auto part = commands.download<HitRecord>(hit_buffer, count);
         std::copy(part.begin(), part.end(), result.hits.begin() + ptrdiff_t(first));

@@ -61,6 +61,13 @@ enum class Routing : uint8_t {
     draws,     ///< each LDI is drawn on its own; vertices of triangles that are not its own are thrown away
 };
 
+/// What two_level and mipmap do at a time (the paper, section 4).
+enum class Batch : uint8_t {
+    none,    ///< one sample, one ray
+    layers,  ///< four samples of a pixel
+    rays,    ///< four rays a thread: `peelray trace` and the bounces of a picture, not its shadow rays
+};
+
 /// As the command line calls them.
 const char* name_of(Traversal traversal);
 const char* name_of(BuilderKind builder);
@@ -68,8 +75,9 @@ const char* name_of(BuilderKind builder);
 /// How cubes are built and stored.
 struct CubeLayout {
     Traversal traversal = Traversal::voxel;
-    glm::uvec2 block{8};      ///< pixels of a block of two_level along u and v: 2 to 32
-    bool half_depth = false;  ///< by pixel: depths rounded to half floats, as the paper stores them
+    glm::uvec2 block{8};        ///< pixels of a block of two_level along u and v: 2 to 32
+    bool half_depth = false;    ///< by pixel: depths rounded to half floats, as the paper stores them
+    Batch batch = Batch::none;  ///< by pixel
     BuilderKind builder = BuilderKind::compute;
     Routing routing = Routing::geometry;  ///< of abuffer and peel
 

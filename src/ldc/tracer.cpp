@@ -40,6 +40,10 @@ uint32_t shader_constant(HitTest test) {
     return 0;
 }
 
+uint32_t shader_constant(Batch batch) {
+    return batch == Batch::layers ? 1 : 0;
+}
+
 uint32_t shader_constant(Traversal traversal) {
     switch (traversal) {
         case Traversal::voxel:
@@ -66,9 +70,13 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                   const Buffer& hits, const TraceOptions& options) {
     const HitTest test = options.test;
     assert(scene.cubes.sampling() == sampling_for(test));
-    const Pass& pass = device.pass(
-        "trace", {options.any_hit, shader_constant(test), options.edges == Edges::precise && test == HitTest::exact,
-                  shader_constant(scene.cubes.layout().traversal)});
+    const CubeLayout& layout = scene.cubes.layout();
+    std::vector<uint32_t> constants = {options.any_hit, shader_constant(test),
+                                       options.edges == Edges::precise && test == HitTest::exact,
+                                       shader_constant(layout.traversal)};
+    const bool four = layout.by_pixel() && layout.batch == Batch::rays;
+    if (!four) constants.push_back(shader_constant(layout.batch));
+    const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();
     p.count = queue.count;
@@ -77,16 +85,18 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     p.skips = queue.skip != nullptr;
     p.tolerance = options.tolerance;
     p.block = scene.cubes.layout().block;
-    const std::vector<Binding> bindings =
-        cube_bindings(scene, {{"rays", queue.rays},
-                              {"skip", queue.skip ? *queue.skip : queue.rays},
-                              {"queue", queue.counters ? *queue.counters : queue.rays},
-                              {"hits", hits}});
+    std::vector<Binding> bindings;
+    for (const Binding& binding : cube_bindings(scene, {{"rays", queue.rays},
+                                                        {"skip", queue.skip ? *queue.skip : queue.rays},
+                                                        {"queue", queue.counters ? *queue.counters : queue.rays},
+                                                        {"hits", hits}}))
+        // Four rays take the instances in turn, without the hierarchy, and only by pixel.
+        if (!four || (binding.name != "top_table" && binding.name != "instance_boxes")) bindings.push_back(binding);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;
     }
-    commands.run(pass, bindings, p, groups_for(queue.count, 64));
+    commands.run(pass, bindings, p, groups_for(four ? (queue.count + 3) / 4 : queue.count, 64));
 }
 
 void record_file_hits(Commands& commands, Device& device, const Instances& instances, const Buffer& triangle_ids,

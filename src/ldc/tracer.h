@@ -50,6 +50,7 @@ std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, s
 /// Specialisation constants of the shaders that trace: PEELRAY_EXACT, ... and PEELRAY_VOXELS, ...
 uint32_t shader_constant(HitTest test);
 uint32_t shader_constant(Traversal traversal);
+uint32_t shader_constant(Batch batch);
 
 /// The bindings of shaders/cube_fetch.glsl.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);

@@ -277,9 +277,10 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
                                                           {"queue", queues.counters()},
                                                           {"lights", scene.lights}});
     const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.materials, others);
-    commands.run_indirect(device.pass("shadow", {shader_constant(hit), traced && scene.has_glass,
-                                                 shader_constant(settings.layout.traversal)}),
-                          bindings, p, queues.groups(), p.level * 12);
+    commands.run_indirect(
+        device.pass("shadow", {shader_constant(hit), traced && scene.has_glass,
+                               shader_constant(settings.layout.traversal), shader_constant(settings.layout.batch)}),
+        bindings, p, queues.groups(), p.level * 12);
 }
 
 /// Traces and scatters the levels of the tree of rays, and shades each as soon as it is known that the next one found

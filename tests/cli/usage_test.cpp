@@ -110,6 +110,7 @@ TEST_F(Usage, ImpossibleValues) {
                     {{"--block", "0"}, "2 to 32"},
                     {{"--block", "33x8"}, "2 to 32"},
                     {{"--depth", "24"}, "16 or 32"},
+                    {{"--batch", "rays"}, "--traversal two-level"},
                     {{"--depth", "16"}, "--traversal two-level"},
                     {{"--depth", "16", "--traversal", "mipmap", "--hit", "exact"}, "--hit tolerance"},
                     {{"--background", "-1,0,0"}, "darker than black"},
@@ -144,8 +145,8 @@ TEST_F(Usage, CubeMapsTraceNoRays) {
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
-    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing",
-                           "--depth",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
+    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing", "--depth",
+                           "--batch",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
