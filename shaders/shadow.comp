@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool planar = false;
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
+layout(constant_id = 2) const bool masked = false;  // it has masked materials
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -15,6 +16,8 @@ BUFFER(readonly, 21, Hit, hits)
 BUFFER(, 22, PathNode, nodes)
 BUFFER(, 23, uint, queue)
 BUFFER(readonly, 24, GpuLight, lights)
+#include "alpha_test.glsl"
+#define PEELRAY_ACCEPT(instance, triangle, uv) (!masked || alphaPresent(triangle, uv))
 #include "peelray/peelray.glsl"
 #include "frame.glsl"
 #include "lighting.glsl"

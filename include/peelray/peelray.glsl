@@ -14,6 +14,8 @@
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
+//   bool PEELRAY_ACCEPT(uint instance, uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count
+//                     (`exact` only: `planar` samples are made where there is a surface)
 //
 // A cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
 // made: every empty cell knows an empty box around it, which a ray leaves in one step. The instances are leaves of a hierarchy
@@ -206,7 +208,11 @@ void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, bool any_hit, bo
                     s_hit = t * place.inv_voxel;
                 }
 #endif
-                if ((found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best) {
+                bool counts = (found & PEELRAY_INSIDE) != 0u && s_hit > s_min && s_hit < s_best;
+#ifdef PEELRAY_ACCEPT
+                counts = counts && PEELRAY_ACCEPT(instance, id, uv);
+#endif
+                if (counts) {
                     s_best = s_hit;
                     hit.triangle = id;
                     hit.uv = uv;

@@ -117,15 +117,14 @@ void ComputeBuilder::record_groups(Commands& commands) {
 /// Fragments of all triangles, and the masks of the nodes that they touch.
 void ComputeBuilder::record_raster(Commands& commands, const TriangleBuffers& triangles) {
     const LdcParams p = params();
-    commands.run(device_.pass("ldc_raster"),
-                 {{"positions", triangles.positions},
-                  {"triangles", triangles.triangles},
-                  {"counters", counters_},
-                  {"node_masks", node_masks_},
-                  {"fragments", fragments_},
-                  {"big_triangles", big_triangles_},
-                  {"bodies", cubes_.body_table}},
-                 p, groups_for(p.triangles, 64));
+    // Conservative samples keep what may be a hole: a hit decides at its own place.
+    const bool masked = triangles.masks && cubes_.sampling() == Sampling::centre;
+    std::vector<Binding> bindings = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
+                                     {"counters", counters_},            {"node_masks", node_masks_},
+                                     {"fragments", fragments_},          {"bodies", cubes_.body_table}};
+    for (const Binding& binding : alpha_bindings(triangles)) bindings.push_back(binding);
+    bindings.push_back({"big_triangles", big_triangles_});
+    commands.run(device_.pass("ldc_raster", {masked}), bindings, p, groups_for(p.triangles, 64));
     record_groups(commands);
     commands.run_indirect(device_.pass("ldc_tiles"),
                           {{"positions", triangles.positions},
@@ -136,15 +135,9 @@ void ComputeBuilder::record_raster(Commands& commands, const TriangleBuffers& tr
                            {"bodies", cubes_.body_table}},
                           p, groups_, LDC_GROUPS_BIG * 12);
     record_groups(commands);
-    commands.run_indirect(device_.pass("ldc_raster_tiles"),
-                          {{"positions", triangles.positions},
-                           {"triangles", triangles.triangles},
-                           {"counters", counters_},
-                           {"node_masks", node_masks_},
-                           {"fragments", fragments_},
-                           {"tiles", tiles_},
-                           {"bodies", cubes_.body_table}},
-                          p, groups_, LDC_GROUPS_TILES * 12);
+    bindings.pop_back();
+    bindings.push_back({"tiles", tiles_});
+    commands.run_indirect(device_.pass("ldc_raster_tiles", {masked}), bindings, p, groups_, LDC_GROUPS_TILES * 12);
 }
 
 /// The tables down to the nodes.

@@ -23,18 +23,20 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                   const Buffer& hits, HitTest test, bool any_hit, Edges edges) {
     assert(scene.cubes.sampling() == sampling_for(test));
     const Pass& pass =
-        device.pass("trace", {any_hit, test == HitTest::planar, edges == Edges::precise && test == HitTest::exact});
+        device.pass("trace", {any_hit, test == HitTest::planar, edges == Edges::precise && test == HitTest::exact,
+                              scene.triangles.masks && test == HitTest::exact});
     TraceParams p{};
     p.tree = scene.instances.tree();
     p.count = queue.count;
     p.counted = queue.counters != nullptr;
     p.counter = queue.counter;
     p.skips = queue.skip != nullptr;
-    const std::vector<Binding> bindings =
+    std::vector<Binding> bindings =
         cube_bindings(scene, {{"rays", queue.rays},
                               {"skip", queue.skip ? *queue.skip : queue.rays},
                               {"queue", queue.counters ? *queue.counters : queue.rays},
                               {"hits", hits}});
+    for (const Binding& binding : alpha_bindings(scene.triangles)) bindings.push_back(binding);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

@@ -217,12 +217,7 @@ void Renderer::Impl::build_cubes() {
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    commands.draw(device.raster_pass("visibility"),
-                  {{"frame", view.frame},
-                   {"positions", scene.triangles.positions},
-                   {"triangles", scene.triangles.triangles},
-                   {"instances", scene.instances.table()}},
-                  VisibilityParams{sample_position(sample)}, scene.draws, view.color, view.depth, view.visibility);
+    record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -259,8 +254,9 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
     // Without cubes their bindings still need buffers; the shader does not read them then.
     const Cubes& c = cubes->cubes();
-    const auto or_any = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.materials; };
-    commands.run_indirect(device.pass("shadow", {hit == HitTest::planar, traced && scene.has_glass}),
+    const auto or_any = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.base_colors.materials; };
+    const bool planar = hit == HitTest::planar, masked = scene.triangles.masks && traced && !planar;
+    commands.run_indirect(device.pass("shadow", {planar, traced && scene.has_glass, masked}),
                           surface_bindings(scene, view.frame,
                                            {{"top_table", or_any(c.top_table)},
                                             {"node_table", or_any(c.node_table)},
