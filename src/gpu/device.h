@@ -53,8 +53,8 @@ class Device {
     /// specialisation constants 0, 1, …; each combination is a pass of its own.
     const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
 
-    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is nearer).
-    /// `fragment`: the name of another fragment shader; empty: its own.
+    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is
+    /// nearer). `fragment`: the name of another fragment shader; empty: its own.
     const RasterPass& raster_pass(std::string_view shader, std::string_view fragment = {});
 
     /// What the validation layers said so far, one message each; empty without `validate`.

@@ -5,7 +5,8 @@
 namespace peelray {
 
 std::vector<Binding> base_color_bindings(const BaseColorBuffers& b) {
-    return {{"materials", b.materials}, {"texture_infos", b.texture_infos}, {"texels", b.texels}, {"uvs", b.uvs},
+    return {{"materials", b.materials}, {"texture_infos", b.texture_infos},
+            {"texels", b.texels},       {"uvs", b.uvs},
             {"colors", b.colors},       {"triangle_materials", b.triangle_materials}};
 }
 

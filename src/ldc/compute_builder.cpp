@@ -119,9 +119,9 @@ void ComputeBuilder::record_raster(Commands& commands, const TriangleBuffers& tr
     const LdcParams p = params();
     // Conservative samples keep what may be a hole: a hit decides at its own place.
     const bool masked = triangles.masks && cubes_.sampling() == Sampling::centre;
-    std::vector<Binding> bindings = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
-                                     {"counters", counters_},            {"node_masks", node_masks_},
-                                     {"fragments", fragments_},          {"bodies", cubes_.body_table}};
+    std::vector<Binding> bindings = {
+        {"positions", triangles.positions}, {"triangles", triangles.triangles}, {"counters", counters_},
+        {"node_masks", node_masks_},        {"fragments", fragments_},          {"bodies", cubes_.body_table}};
     for (const Binding& binding : alpha_bindings(triangles)) bindings.push_back(binding);
     bindings.push_back({"big_triangles", big_triangles_});
     commands.run(device_.pass("ldc_raster", {masked}), bindings, p, groups_for(p.triangles, 64));

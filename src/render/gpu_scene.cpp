@@ -104,9 +104,8 @@ void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
 
 uint64_t GpuScene::bytes() const {
     uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
-    for (const Buffer* buffer :
-         {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
-          &lights, &environment})
+    for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
+                                 &lights, &environment})
         sum += buffer->bytes();
     return sum;
 }

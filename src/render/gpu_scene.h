@@ -21,7 +21,7 @@ class GpuScene {
     BaseColorBuffers base_colors;
     Buffer normals, triangle_ids, triangle_objects;
     Buffer lights, environment;
-    bool has_glass = false;  ///< some triangle lets light through
+    bool has_glass = false;            ///< some triangle lets light through
     std::vector<GpuLight> light_list;  ///< what `lights` holds
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body

@@ -254,7 +254,9 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
     // Without cubes their bindings still need buffers; the shader does not read them then.
     const Cubes& c = cubes->cubes();
-    const auto or_any = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : scene.base_colors.materials; };
+    const auto or_any = [&](const Buffer& buffer) -> const Buffer& {
+        return buffer ? buffer : scene.base_colors.materials;
+    };
     const bool planar = hit == HitTest::planar, masked = scene.triangles.masks && traced && !planar;
     commands.run_indirect(device.pass("shadow", {planar, traced && scene.has_glass, masked}),
                           surface_bindings(scene, view.frame,

@@ -36,7 +36,8 @@ void record_view(Commands& commands, Device& device, const std::string& name, co
     const RasterPass& pass = device.raster_pass(name, masked ? name + "_masked" : name);
     for (const Binding& binding : base_color_bindings(scene.base_colors))
         if (pass.interface().declares(binding.name)) bindings.push_back(binding);
-    commands.draw(pass, std::span<const Binding>(bindings), params, scene.draws, target.color, target.depth, target.visibility);
+    commands.draw(pass, std::span<const Binding>(bindings), params, scene.draws, target.color, target.depth,
+                  target.visibility);
 }
 
 /// Camera rays and their hits, from the triangles in `target`: level 0 of the queues.

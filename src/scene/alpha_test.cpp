@@ -37,8 +37,9 @@ bool AlphaTest::is_present(uint32_t triangle, double u, double v) const {
         alpha *= interpolate(double(colors[corners.x].w), double(colors[corners.y].w), double(colors[corners.z].w));
     if (m.base_color_texture >= 0) {
         const auto& uvs = geometry_->uvs;
-        alpha *= sample_alpha(scene_->textures[size_t(m.base_color_texture)],
-                              interpolate(glm::dvec2(uvs[corners.x]), glm::dvec2(uvs[corners.y]), glm::dvec2(uvs[corners.z])));
+        alpha *= sample_alpha(
+            scene_->textures[size_t(m.base_color_texture)],
+            interpolate(glm::dvec2(uvs[corners.x]), glm::dvec2(uvs[corners.y]), glm::dvec2(uvs[corners.z])));
     }
     return alpha >= double(m.alpha_cutoff) - rounding;
 }

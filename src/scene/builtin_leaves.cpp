@@ -13,7 +13,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr uint32_t texels = 128;
-constexpr int sprays = 640;
+constexpr int sprays = 420;
 
 /// How far inside a leaf of unit length, pointing along +x from 0, a point lies; negative: outside.
 float inside_leaf(const glm::vec2& p) {
@@ -90,11 +90,13 @@ Scene make_leaves() {
         // Evenly over the crown's sphere by the golden angle, in its outer half.
         const float y = 1 - 2 * (float(i) + 0.5f) / sprays, a = 2.399963f * float(i), r = std::sqrt(1 - y * y);
         const glm::vec3 outwards(r * std::cos(a), y, r * std::sin(a));
-        const glm::vec3 along = glm::normalize(outwards + glm::vec3(random.between(-0.9f, 0.9f), random.between(-0.9f, 0.6f),
-                                                                    random.between(-0.9f, 0.9f)));
+        const glm::vec3 along =
+            glm::normalize(outwards + glm::vec3(random.between(-0.9f, 0.9f), random.between(-0.9f, 0.6f),
+                                                random.between(-0.9f, 0.9f)));
         const glm::vec3 turned(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
         const glm::vec3 side = glm::normalize(glm::cross(along, turned + 2.f * any_perpendicular(along)));
-        add_spray(leaves, crown + outwards * (0.72f * random.between(0.5f, 0.95f)), along, side, random.between(0.2f, 0.34f));
+        add_spray(leaves, crown + outwards * (0.72f * random.between(0.5f, 0.95f)), along, side,
+                  random.between(0.2f, 0.34f));
     }
     Material leaf = matte("leaves", glm::vec3(1));
     leaf.roughness = 0.6f;
@@ -102,8 +104,8 @@ Scene make_leaves() {
     leaf.base_color_texture = build.texture(spray_texture());
     const int trunk = build.add("trunk", std::move(wood), build.material(matte("bark", {0.20f, 0.13f, 0.08f})),
                                 glm::translate(glm::mat4(1), {-0.75f, 0, 0}));
-    const int tree = build.add("leaves", std::move(leaves), build.material(leaf),
-                               glm::translate(glm::mat4(1), {-0.75f, 0, 0}));
+    const int tree =
+        build.add("leaves", std::move(leaves), build.material(leaf), glm::translate(glm::mat4(1), {-0.75f, 0, 0}));
     // The other tree is the same, smaller and seen in a mirror.
     glm::mat4 other = glm::translate(glm::mat4(1), {1.15f, 0, -0.6f});
     other = glm::scale(glm::rotate(other, 2.1f, glm::vec3(0, 1, 0)), {-0.68f, 0.68f, 0.68f});
@@ -116,7 +118,7 @@ Scene make_leaves() {
     ball("chrome ball", metal("chrome", glm::vec3(0.92f)), {0.45f, 0, 1.15f}, 0.36f);
     ball("red ball", matte("red", {0.75f, 0.07f, 0.05f}), {-0.45f, 0, -1.3f}, 0.45f);
     ball("yellow ball", matte("yellow", {0.88f, 0.62f, 0.07f}), {-1.75f, 0, 0.95f}, 0.22f);
-    build.camera({0.9f, 1.75f, 5.4f}, {0.0f, 0.98f, 0.0f}, 36);
+    build.camera({0.9f, 1.85f, 5.7f}, {0.05f, 0.62f, 0.0f}, 38);
     return build.take();
 }
 

@@ -88,8 +88,8 @@ class MaterialReader {
     void read_alpha_mode() {
         const std::string& mode = from_.alphaMode;
         if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-            fail("{}: alphaMode \"{}\" is unknown; it must be OPAQUE, MASK or BLEND", loader_.file.where("materials", index_),
-                 printable(mode, 20));
+            fail("{}: alphaMode \"{}\" is unknown; it must be OPAQUE, MASK or BLEND",
+                 loader_.file.where("materials", index_), printable(mode, 20));
         if (from_.alphaCutoff < 0)
             fail("{}: alphaCutoff {} must not be below 0", loader_.file.where("materials", index_), from_.alphaCutoff);
         if (mode == "MASK") material_.alpha_cutoff = static_cast<float>(from_.alphaCutoff);
