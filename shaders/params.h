@@ -280,7 +280,7 @@ struct GpuMaterial {
     uint flags;         ///< MATERIAL_*
     float thickness;    ///< of a volume, world units; rays measure it, cube maps cannot
     float alpha;        ///< of the base colour
-    float alpha_cutoff;  ///< 0: opaque
+    float alpha_cutoff; ///< 0: opaque
 };
 SHARED_SIZE(GpuMaterial, 72);
 #define MATERIAL_THIN 1u

@@ -31,10 +31,11 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     p.counted = queue.counters != nullptr;
     p.counter = queue.counter;
     p.skips = queue.skip != nullptr;
-    std::vector<Binding> bindings = cube_bindings(scene, {{"rays", queue.rays},
-                                                          {"skip", queue.skip ? *queue.skip : queue.rays},
-                                                          {"queue", queue.counters ? *queue.counters : queue.rays},
-                                                          {"hits", hits}});
+    std::vector<Binding> bindings =
+        cube_bindings(scene, {{"rays", queue.rays},
+                              {"skip", queue.skip ? *queue.skip : queue.rays},
+                              {"queue", queue.counters ? *queue.counters : queue.rays},
+                              {"hits", hits}});
     for (const Binding& binding : alpha_bindings(scene.triangles)) bindings.push_back(binding);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
