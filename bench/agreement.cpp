@@ -186,7 +186,7 @@ Json measure(Device& device, const std::string& scene, const std::string& hit, c
              uint64_t& wrong) {
     const Scene source = load_scene(scene);
     const Geometry geometry = flatten(source);
-    const Oracle oracle(geometry);
+    const Oracle oracle(geometry, AlphaTest(source, geometry));
     Bench bench(device, source, geometry, oracle, options.ldc, hit == "planar" ? HitTest::planar : HitTest::exact);
     Json result = {{"scene", scene}, {"triangles", geometry.triangles.size()}, {"hit", hit}, {"ldc", options.ldc}};
     Tally all;

@@ -6,6 +6,7 @@
 
 #include "placed.glsl"
 #include "shading.glsl"
+#include "textures.glsl"
 
 /// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
 const float FLATTEST_START = 4.0;
@@ -36,34 +37,6 @@ vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
 vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 geometric, vec3 weights) {
     return p + lifted(p - a, na, geometric) * weights.x + lifted(p - b, nb, geometric) * weights.y +
            lifted(p - c, nc, geometric) * weights.z;
-}
-
-uint wrapTexel(int i, uint size, uint mode) {
-    const int n = int(size);
-    if (mode == 2u) return uint(clamp(i, 0, n - 1));
-    if (mode == 0u) return uint(((i % n) + n) % n);
-    const int m = ((i % (2 * n)) + 2 * n) % (2 * n);
-    return uint(m < n ? m : 2 * n - 1 - m);
-}
-
-vec4 fetchTexel(GpuTexture info, int x, int y) {
-    const uint at = info.offset + wrapTexel(y, info.height, info.flags >> 2u & 3u) * info.width + wrapTexel(x, info.width, info.flags & 3u);
-    const vec4 encoded = unpackUnorm4x8(texels[at]);
-    return vec4(srgbToLinear(encoded.rgb), encoded.a);
-}
-
-vec4 sampleTexture(int index, vec2 uv) {
-    const GpuTexture info = texture_infos[index];
-    // Whole repeats are dropped first: large coordinates would lose the fraction's bits.
-    const vec2 wrapped = uv - 2.0 * floor(uv * 0.5);
-    const bool clamped_u = (info.flags & 3u) == 2u, clamped_v = (info.flags >> 2u & 3u) == 2u;
-    const vec2 p = vec2(clamped_u ? clamp(uv.x, 0.0, 1.0) : wrapped.x, clamped_v ? clamp(uv.y, 0.0, 1.0) : wrapped.y) * vec2(info.width, info.height);
-    if ((info.flags & 16u) != 0u) return fetchTexel(info, int(floor(p.x)), int(floor(p.y)));
-    const vec2 q = p - 0.5, f = fract(q);
-    const ivec2 i = ivec2(floor(q));
-    const vec4 top = mix(fetchTexel(info, i.x, i.y), fetchTexel(info, i.x + 1, i.y), f.x);
-    const vec4 bottom = mix(fetchTexel(info, i.x, i.y + 1), fetchTexel(info, i.x + 1, i.y + 1), f.x);
-    return mix(top, bottom, f.y);
 }
 
 /// A normal as its instance turns it, unit: cofactors are the inverse transpose times the determinant.
@@ -111,7 +84,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     s.material = triangle_materials[triangle];
     s.base_color = materials[s.material].base_color;
-    if (frame[0].has_colors != 0u)
+    if ((materials[s.material].flags & MATERIAL_COLORED) != 0u)
         s.base_color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
     const int texture_index = materials[s.material].texture;
     if (texture_index >= 0)

@@ -3,6 +3,7 @@
 #include "common.glsl"
 #include "params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool masked = false;  // centres where a material has a hole give no samples
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
 BUFFER(readonly, 1, uvec3, triangles)
@@ -11,7 +12,10 @@ BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(writeonly, 5, uint, big_triangles)
 BUFFER(readonly, 6, LdcBody, bodies)
+#define BASE_COLOR_FIRST_BINDING 7
+#include "base_color_buffers.glsl"
 #include "bounds.glsl"
+#include "ldc_alpha.glsl"
 #include "ldc_emit.glsl"
 
 void main() {
@@ -56,11 +60,13 @@ void main() {
         if (captured)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling)) count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, false, 0u);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(grid, id << 2u | axis, vec2(x, y) + 0.5)))
+                        count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, false, 0u);
         uint position = ldcReserve(count);
         if (count != 0u)
             for (int y = lo.y; y <= hi.y; y++)
                 for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling)) position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, true, position);
+                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(grid, id << 2u | axis, vec2(x, y) + 0.5)))
+                        position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, true, position);
     }
 }

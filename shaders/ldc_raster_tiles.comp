@@ -3,6 +3,7 @@
 #include "common.glsl"
 #include "params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool masked = false;  // as in ldc_raster.comp
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
 BUFFER(readonly, 1, uvec3, triangles)
@@ -11,6 +12,9 @@ BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(readonly, 5, uvec2, tiles)
 BUFFER(readonly, 6, LdcBody, bodies)
+#define BASE_COLOR_FIRST_BINDING 7
+#include "base_color_buffers.glsl"
+#include "ldc_alpha.glsl"
 #include "ldc_emit.glsl"
 #include "ldc_big.glsl"
 
@@ -31,6 +35,7 @@ void main() {
         const uint j = k * 64u + gl_LocalInvocationIndex;
         const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
         if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, params.sampling)) continue;
+        if (masked && !ldcPresent(grid, id, vec2(pixel) + 0.5)) continue;
         covered |= 1u << k;
         count += ldcEmitPixel(t, pixel, id, place, false, 0u);
     }

@@ -6,11 +6,11 @@ PARAMS(MapVisibilityParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-BUFFER(readonly, 3, uint, triangle_materials)
-BUFFER(readonly, 4, GpuMaterial, materials)
-BUFFER(readonly, 5, uint, triangle_objects)
-BUFFER(readonly, 6, GpuObject, objects)
-BUFFER(readonly, 7, GpuInstance, instances)
+BUFFER(readonly, 3, GpuInstance, instances)
+#define BASE_COLOR_FIRST_BINDING 4
+#include "base_color_buffers.glsl"
+BUFFER(readonly, 10, uint, triangle_objects)
+BUFFER(readonly, 11, GpuObject, objects)
 layout(location = 0) flat out uvec2 surface;  // a SurfaceId
 #include "placed.glsl"
 #include "project.glsl"

@@ -288,10 +288,13 @@ struct GpuMaterial {
     int texture;        ///< base colour, -1: none
     uint flags;         ///< MATERIAL_*
     float thickness;    ///< of a volume, world units; rays measure it, cube maps cannot
+    float alpha;        ///< of the base colour
+    float alpha_cutoff; ///< 0: opaque
 };
-SHARED_SIZE(GpuMaterial, 64);
+SHARED_SIZE(GpuMaterial, 72);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
+#define MATERIAL_COLORED 4u  // vertices have colours
 
 struct GpuTexture {
     uint offset;  ///< first texel in the texel buffer
@@ -332,7 +335,6 @@ struct Frame {
     uint env_levels;
     float sun_cosine;    ///< of the sun's angular radius; 2: no sun disc
     vec3 sun_direction;  ///< to the sun
-    uint has_colors;
     vec3 sun_radiance;
     uint effects;        ///< EFFECT_*
     vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
@@ -343,7 +345,7 @@ struct Frame {
     float tolerance;     ///< of `tolerance` hits, world units; else 0
     uvec2 block;         ///< pixels of a block of two_level
 };
-SHARED_SIZE(Frame, 300);
+SHARED_SIZE(Frame, 296);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -7,6 +7,7 @@ layout(constant_id = 0) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 1) const bool glass = false;  // the scene has surfaces that let light through
 layout(constant_id = 2) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 3) const uint batch = 0u;      // PEELRAY_ONE, ...
+layout(constant_id = 4) const bool masked = false;  // it has masked materials
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -17,6 +18,8 @@ BUFFER(readonly, 21, Hit, hits)
 BUFFER(, 22, PathNode, nodes)
 BUFFER(, 23, uint, queue)
 BUFFER(readonly, 24, GpuLight, lights)
+#include "alpha_test.glsl"
+#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
 #include "peelray/peelray.glsl"
 #include "frame.glsl"
 #include "lighting.glsl"

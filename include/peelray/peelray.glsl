@@ -16,6 +16,8 @@
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
+//   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
+//                     other samples are made where there is a surface)
 //
 // By voxel a cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
 // made: every empty cell knows an empty box around it, which a ray leaves in one step. The instances are leaves of a hierarchy
@@ -164,6 +166,9 @@ bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, inout P
     }
 #endif
     if ((found & PEELRAY_INSIDE) == 0u || !(s_hit > r.s_min && s_hit < r.s_best)) return false;
+#ifdef PEELRAY_ACCEPT
+    if (!PEELRAY_ACCEPT(id, uv)) return false;
+#endif
     r.s_best = s_hit;
     hit.triangle = id;
     hit.uv = uv;

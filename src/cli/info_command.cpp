@@ -24,6 +24,7 @@ std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
                                    m.base_color.y, m.base_color.z, m.metallic, m.roughness);
     if (m.base_color_texture >= 0) text += fmt::format(", texture {}", m.base_color_texture);
+    if (m.alpha_cutoff > 0) text += fmt::format(", holes where alpha is below {:.3g}", m.alpha_cutoff);
     if (m.emissive != glm::vec3(0))
         text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);
     if (m.transmission > 0)

@@ -80,6 +80,12 @@ class Commands {
         record_draw(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, ranges, color, depth, target);
     }
 
+    template <typename Params>
+    void draw(const RasterPass& pass, std::span<const Binding> bindings, const Params& params,
+              std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth, const Buffer& target) {
+        record_draw(pass, bindings, &params, sizeof params, ranges, color, depth, target);
+    }
+
     /// Fills `bytes` from `offset` (multiples of 4; ~0ull: to the end) with `value`.
     void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = ~0ull);
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0, uint64_t to_offset = 0);

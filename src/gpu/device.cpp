@@ -14,7 +14,7 @@ namespace peelray {
 struct Device::State {
     std::unique_ptr<PipelineCache> cache;
     std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
-    std::map<std::string, std::unique_ptr<RasterPass>> raster_passes;
+    std::map<std::pair<std::string, std::string>, std::unique_ptr<RasterPass>> raster_passes;
 };
 
 void check_vulkan(VkResult result, std::string_view what) {
@@ -102,9 +102,10 @@ const Pass& Device::pass(std::string_view shader, const std::vector<uint32_t>& c
     return *entry;
 }
 
-const RasterPass& Device::raster_pass(std::string_view shader) {
-    auto& entry = state_->raster_passes[std::string(shader)];
-    if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader);
+const RasterPass& Device::raster_pass(std::string_view shader, std::string_view fragment) {
+    if (fragment.empty()) fragment = shader;
+    auto& entry = state_->raster_passes[{std::string(shader), std::string(fragment)}];
+    if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader, fragment);
     return *entry;
 }
 

@@ -53,8 +53,9 @@ class Device {
     /// specialisation constants 0, 1, …; each combination is a pass of its own.
     const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
 
-    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is nearer).
-    const RasterPass& raster_pass(std::string_view shader);
+    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is
+    /// nearer). `fragment`: the name of another fragment shader; empty: its own.
+    const RasterPass& raster_pass(std::string_view shader, std::string_view fragment = {});
 
     /// What the validation layers said so far, one message each; empty without `validate`.
     const std::vector<std::string>& validation_messages() const { return validation_messages_; }

@@ -54,6 +54,10 @@ void ShaderInterface::reflect(std::span<const uint32_t> code) {
         group_size[axis] = std::max(1u, compiler.get_execution_mode_argument(spv::ExecutionModeLocalSize, axis));
 }
 
+bool ShaderInterface::declares(std::string_view name) const {
+    return std::any_of(bindings.begin(), bindings.end(), [&](const auto& binding) { return binding.name == name; });
+}
+
 PassBase::~PassBase() {
     device_.vk.vkDestroyPipeline(device_.handle, pipeline_, nullptr);
     device_.vk.vkDestroyPipelineLayout(device_.handle, layout_, nullptr);
@@ -109,11 +113,11 @@ Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const
     check_vulkan(result, "compiling the shader " + name_);
 }
 
-RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader)
+RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, std::string_view fragment_shader)
     : PassBase(device, std::string(shader)) {
     stages_ = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkShaderModule vertex = create_module(find_shader(name_ + ".vert"));
-    VkShaderModule fragment = create_module(find_shader(name_ + ".frag"));
+    VkShaderModule fragment = create_module(find_shader(std::string(fragment_shader) + ".frag"));
     create_layout();
 
     const VkPipelineShaderStageCreateInfo stage_infos[] = {

@@ -24,6 +24,7 @@ struct ShaderInterface {
     uint32_t group_size[3] = {1, 1, 1};
 
     void reflect(std::span<const uint32_t> code);
+    bool declares(std::string_view name) const;
 };
 
 /// The part that every kind of pass shares: layout and pipeline.
@@ -63,7 +64,7 @@ class Pass : public PassBase {
 /// A rasterising pass without vertex buffers (see Commands::draw): the vertex shader fetches what it needs.
 class RasterPass : public PassBase {
   public:
-    RasterPass(Device& device, VkPipelineCache cache, std::string_view shader);
+    RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, std::string_view fragment);
 };
 
 /// Adds shaders that are not the library's own (tests' probes); call before the first pass() that names one.

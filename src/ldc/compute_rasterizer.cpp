@@ -15,15 +15,14 @@ void ComputeRasterizer::allocate(Commands&, BuildState& state) {
 void ComputeRasterizer::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     Device& device = state.device;
     const LdcParams& p = state.params;
-    commands.run(device.pass("ldc_raster"),
-                 {{"positions", triangles.positions},
-                  {"triangles", triangles.triangles},
-                  {"counters", state.counters},
-                  {"node_masks", state.node_masks},
-                  {"fragments", state.fragments},
-                  {"big_triangles", big_triangles_},
-                  {"bodies", state.cubes.body_table}},
-                 p, groups_for(p.triangles, 64));
+    // Conservative samples keep what may be a hole: a hit decides at its own place.
+    const bool masked = triangles.masks && state.cubes.sampling() != Sampling::conservative;
+    std::vector<Binding> bindings = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
+                                     {"counters", state.counters},       {"node_masks", state.node_masks},
+                                     {"fragments", state.fragments},     {"bodies", state.cubes.body_table}};
+    for (const Binding& binding : alpha_bindings(triangles)) bindings.push_back(binding);
+    bindings.push_back({"big_triangles", big_triangles_});
+    commands.run(device.pass("ldc_raster", {masked}), bindings, p, groups_for(p.triangles, 64));
     state.record_groups(commands);
     commands.run_indirect(device.pass("ldc_tiles"),
                           {{"positions", triangles.positions},
@@ -34,15 +33,9 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                            {"bodies", state.cubes.body_table}},
                           p, state.groups, LDC_GROUPS_BIG * 12);
     state.record_groups(commands);
-    commands.run_indirect(device.pass("ldc_raster_tiles"),
-                          {{"positions", triangles.positions},
-                           {"triangles", triangles.triangles},
-                           {"counters", state.counters},
-                           {"node_masks", state.node_masks},
-                           {"fragments", state.fragments},
-                           {"tiles", tiles_},
-                           {"bodies", state.cubes.body_table}},
-                          p, state.groups, LDC_GROUPS_TILES * 12);
+    bindings.pop_back();
+    bindings.push_back({"tiles", tiles_});
+    commands.run_indirect(device.pass("ldc_raster_tiles", {masked}), bindings, p, state.groups, LDC_GROUPS_TILES * 12);
 }
 
 bool ComputeRasterizer::grow(BuildState& state, const LdcCounters& counts) {

@@ -8,6 +8,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
+#include "ldc/base_color.h"
 #include "params.h"
 
 namespace peelray {
@@ -17,6 +18,8 @@ struct TriangleBuffers {
     Buffer positions;    ///< vec3 each, tightly packed
     Buffer triangles;    ///< three uint32 indices each
     uint32_t count = 0;  ///< triangles, < 2^30
+    /// Where they have holes; must outlive this. Null: no material is masked.
+    const BaseColorBuffers* masks = nullptr;
 
     TriangleBuffers() = default;
     /// Uploads. Throws Error beyond 2^30 triangles or the device's memory.

@@ -103,9 +103,9 @@ void Instances::record_large(Commands& commands) {
     commands.fill(sums_, 0, 0, uint64_t(buckets) * 8);
     commands.run(device_.pass("tree_middles"), {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}}, p,
                  groups_for(count(), 256));
-    commands.run(
-        device_.pass("tree_keys"),
-        {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}, {"tree_keys", keys_}, {"sums", sums_}}, p, groups);
+    commands.run(device_.pass("tree_keys"),
+                 {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}, {"tree_keys", keys_}, {"sums", sums_}}, p,
+                 groups);
     const ScanParams scan{buckets, SCAN_NO_COUNTER};
     const Groups scan_groups = groups_for(buckets, SCAN_BLOCK);
     // No counter: any buffer does.
@@ -132,8 +132,8 @@ void Instances::record_large(Commands& commands) {
 
 uint64_t Instances::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &unsorted_boxes_, &middles_, &keys_, &sums_,
-                                 &block_sums_, &unsorted_instances_})
+    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &unsorted_boxes_, &middles_, &keys_,
+                                 &sums_, &block_sums_, &unsorted_instances_})
         bytes += buffer->bytes();
     return bytes;
 }

@@ -9,7 +9,8 @@ namespace peelray {
 /// either, record() places the cubes anew.
 class Instances {
   public:
-    /// `infos`: at least one; instances of the same body need not lie together here. Throws Error beyond 2^24 instances.
+    /// `infos`: at least one; instances of the same body need not lie together here. Throws Error beyond 2^24
+    /// instances.
     Instances(Device& device, const std::vector<InstanceInfo>& infos);
 
     uint32_t count() const { return tree_.instances; }

@@ -76,6 +76,7 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                        shader_constant(layout.traversal)};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
     if (!four) constants.push_back(shader_constant(layout.batch));
+    constants.push_back(scene.triangles.masks && test == HitTest::exact);
     const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();
@@ -92,6 +93,7 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                                         {"hits", hits}}))
         // Four rays take the instances in turn, without the hierarchy, and only by pixel.
         if (!four || (binding.name != "top_table" && binding.name != "instance_boxes")) bindings.push_back(binding);
+    for (const Binding& binding : alpha_bindings(scene.triangles)) bindings.push_back(binding);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

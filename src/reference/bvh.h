@@ -20,7 +20,7 @@ struct Bvh {
         uint32_t index = ~0u;  ///< into triangles.corners
     };
 
-    explicit Bvh(const Geometry& geometry);
+    explicit Bvh(const Geometry& geometry, const AlphaTest& alpha = {});
     ~Bvh();
     Bvh(const Bvh&) = delete;
     Bvh& operator=(const Bvh&) = delete;
@@ -31,6 +31,7 @@ struct Bvh {
     std::vector<uint32_t> along(const OracleRay& ray) const;
 
     TriangleSet triangles;
+    AlphaTest alpha;  ///< a hit where it finds a hole does not count
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 };

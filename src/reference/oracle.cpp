@@ -17,6 +17,7 @@ enum class Mode { nearest, occluded, collect };
 /// changes.
 struct Query : RTCIntersectContext {
     const TriangleSet& triangles;
+    const AlphaTest& alpha;
     PreparedRay ray;
     Mode mode;
     uint32_t skip = ~0u;
@@ -37,6 +38,7 @@ struct Query : RTCIntersectContext {
         OracleHit found;
         if (id == skip || !ray.intersect(triangles.corners[candidate], found)) return tfar;
         if (found.t > hit.t || (found.t == hit.t && id > hit.triangle)) return tfar;
+        if (!alpha.is_present(id, found.u, found.v)) return tfar;
         hit = found;
         hit.triangle = id;
         index = candidate;
@@ -93,7 +95,7 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
 }
 
 Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip) {
-    Query query{{}, bvh.triangles, {}, mode, skip, Bvh::reach};
+    Query query{{}, bvh.triangles, bvh.alpha, {}, mode, skip, Bvh::reach};
     rtcInitIntersectContext(&query);
     const std::optional<PreparedRay> prepared = PreparedRay::make(ray, bvh.triangles);
     if (!bvh.scene || !prepared) return query;
@@ -109,7 +111,7 @@ Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip) {
 
 }  // namespace
 
-Bvh::Bvh(const Geometry& geometry) : triangles(geometry) {
+Bvh::Bvh(const Geometry& geometry, const AlphaTest& alpha) : triangles(geometry), alpha(alpha) {
     if (triangles.ids.empty()) return;  // every ray misses
     device = rtcNewDevice(nullptr);
     if (!device)
@@ -152,7 +154,7 @@ std::vector<uint32_t> Bvh::along(const OracleRay& ray) const {
     return trace(*this, ray, Mode::collect, ~0u).collected;
 }
 
-Oracle::Oracle(const Geometry& geometry) : impl_(std::make_unique<Impl>(geometry)) {}
+Oracle::Oracle(const Geometry& geometry, const AlphaTest& alpha) : impl_(std::make_unique<Impl>(geometry, alpha)) {}
 Oracle::~Oracle() = default;
 
 OracleHit Oracle::closest(const OracleRay& ray, uint32_t skip) const {
@@ -163,7 +165,7 @@ double Oracle::diagonal() const {
     return impl_->triangles.diagonal;
 }
 
-OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip) {
+OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip, const AlphaTest& alpha) {
     const TriangleSet triangles(geometry);
     OracleHit nearest{std::numeric_limits<double>::infinity(), ~0u, 0, 0};
     const std::optional<PreparedRay> prepared = PreparedRay::make(ray, triangles);
@@ -171,6 +173,7 @@ OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, ui
         OracleHit hit;
         // Ascending indices: of equal t the lowest index stays, as in the oracle.
         if (triangles.ids[i] == skip || !prepared->intersect(triangles.corners[i], hit) || hit.t >= nearest.t) continue;
+        if (!alpha.is_present(triangles.ids[i], hit.u, hit.v)) continue;
         nearest = hit;
         nearest.triangle = triangles.ids[i];
     }

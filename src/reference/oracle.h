@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/alpha_test.h"
 
 namespace peelray {
 
@@ -35,7 +35,8 @@ enum class Verdict {
 /// Double-precision ray casting: Embree 3 (robust mode) finds candidate triangles, each is intersected again in double.
 class Oracle {
   public:
-    explicit Oracle(const Geometry& geometry);
+    /// `alpha`: where the geometry has holes.
+    explicit Oracle(const Geometry& geometry, const AlphaTest& alpha = {});
     ~Oracle();
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;
@@ -62,6 +63,7 @@ class Oracle {
 
 /// The same answer as Oracle::closest() from a loop over all triangles, without Embree: what tests compare the oracle
 /// with.
-OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip = ~0u);
+OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip = ~0u,
+                              const AlphaTest& alpha = {});
 
 }  // namespace peelray

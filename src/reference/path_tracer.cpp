@@ -75,7 +75,7 @@ struct PathTracer::Impl {
 
     Impl(const Scene& scene, const Geometry& geometry, const Environment& environment)
         : geometry(geometry),
-          bvh(geometry),
+          bvh(geometry, AlphaTest(scene, geometry)),
           surfaces(scene, geometry),
           surroundings(environment),
           lights(scene.lights) {

@@ -4,46 +4,9 @@
 #include <cmath>
 
 #include "reference/optics.h"
-#include "scene/encoding.h"
+#include "scene/sampling.h"
 
 namespace peelray {
-namespace {
-
-int wrap(int i, int size, Texture::Wrap mode) {
-    if (mode == Texture::Wrap::clamp) return std::clamp(i, 0, size - 1);
-    const int period = mode == Texture::Wrap::repeat ? size : 2 * size;
-    const int m = ((i % period) + period) % period;
-    return m < size ? m : period - 1 - m;
-}
-
-glm::dvec3 texel(const Texture& texture, int x, int y) {
-    const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
-    const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
-    const uint32_t encoded = texture.texels[row * texture.width + column];
-    const auto channel = [&](int i) { return srgb_to_linear((encoded >> (8 * i) & 255) / 255.0); };
-    return {channel(0), channel(1), channel(2)};
-}
-
-/// Bilinear between the four values around `p` (values lie at half-integers).
-template <typename Fetch>
-glm::dvec3 bilinear(const glm::dvec2& p, Fetch fetch) {
-    const glm::dvec2 q = p - 0.5, f = q - glm::floor(q);
-    const int x = int(std::floor(q.x)), y = int(std::floor(q.y));
-    return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
-                    f.y);
-}
-
-glm::dvec3 sample_texture(const Texture& texture, glm::dvec2 uv) {
-    // Repeats are dropped, so that any coordinate fits an int.
-    const auto place = [](double x, Texture::Wrap mode) {
-        return mode == Texture::Wrap::clamp ? std::clamp(x, 0.0, 1.0) : x - 2 * std::floor(x / 2);
-    };
-    const glm::dvec2 p(place(uv.x, texture.wrap_u) * texture.width, place(uv.y, texture.wrap_v) * texture.height);
-    if (texture.nearest) return texel(texture, int(std::floor(p.x)), int(std::floor(p.y)));
-    return bilinear(p, [&](int x, int y) { return texel(texture, x, y); });
-}
-
-}  // namespace
 
 Optics::Optics(const Material& m)
     : base_color(m.base_color),
@@ -112,7 +75,7 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     }
     if (const int texture = scene_.materials[s.material].base_color_texture; texture >= 0) {
         const glm::dvec2 uvs[3] = {geometry_.uvs[corners.x], geometry_.uvs[corners.y], geometry_.uvs[corners.z]};
-        s.base_color *= sample_texture(scene_.textures[size_t(texture)], interpolate(uvs));
+        s.base_color *= sample_color(scene_.textures[size_t(texture)], interpolate(uvs));
     }
     return s;
 }

@@ -22,7 +22,7 @@ using Offset = glm::dvec3;
 class Neighbourhood {
   public:
     Neighbourhood(const Bvh& bvh, const OracleRay& ray)
-        : triangles_(bvh.triangles), ray_(ray), radius_(allowed_offset * triangles_.diagonal) {
+        : triangles_(bvh.triangles), alpha_(bvh.alpha), ray_(ray), radius_(allowed_offset * triangles_.diagonal) {
         const double length = glm::length(ray.direction / max_component(ray)) * max_component(ray);
         along_ = ray.direction / length;
         const glm::dvec3 helper = std::abs(along_.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -34,7 +34,8 @@ class Neighbourhood {
     }
 
     bool surface_near() const { return !near_.empty(); }
-    bool edge_near() const { return !edges_.empty() || end_near_; }
+    /// Of a triangle, of one of its holes, or of the ray itself.
+    bool edge_near() const { return !edges_.empty() || end_near_ || hole_near_; }
 
     /// Could some triangle near the ray be hit at `t`? An offset moves the distance to its plane by no more than
     /// itself.
@@ -130,6 +131,7 @@ class Neighbourhood {
         near |= (signs[0] >= 0 && signs[1] >= 0 && signs[2] >= 0) || (signs[0] <= 0 && signs[1] <= 0 && signs[2] <= 0);
         if (!near) return;
         near_.push_back(index);
+        hole_near_ |= alpha_.is_masked(triangles_.ids[index]);
         const glm::dvec3 normal = unit_normal(c);
         for (const double t : {ray_.tmin, ray_.tmax}) {
             const glm::dvec3 end = ray_.origin + t * ray_.direction;
@@ -181,12 +183,13 @@ class Neighbourhood {
     }
 
     const TriangleSet& triangles_;
+    const AlphaTest& alpha_;
     const OracleRay& ray_;
     double radius_;
     glm::dvec3 along_, x_, y_;
     std::vector<uint32_t> near_;
     std::vector<Offset> edges_;
-    bool end_near_ = false;
+    bool end_near_ = false, hole_near_ = false;
 };
 
 /// Do the oracle's answer and a claimed t mean the same?

@@ -4,37 +4,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/base_colors.h"
 #include "render/transforms.h"
+#include "scene/alpha_test.h"
 #include "scene/picture.h"
 
 namespace peelray {
 namespace {
-
-/// A buffer that holds `data`; never empty, so that it can be bound.
-template <typename T>
-Buffer upload(Device& device, Commands& commands, const char* name, const std::vector<T>& data) {
-    Buffer buffer(device, name, std::max<size_t>(data.size(), 1) * sizeof(T));
-    if (!data.empty()) commands.upload(buffer, std::span<const T>(data));
-    return buffer;
-}
-
-GpuMaterial gpu_material(const Material& material) {
-    GpuMaterial m{};
-    m.base_color = material.base_color;
-    m.metallic = material.metallic;
-    m.emissive = material.emissive;
-    m.roughness = material.roughness;
-    m.transmission = material.transmission;
-    m.ior = std::max(material.ior, 1.0f);
-    m.texture = material.base_color_texture;
-    m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u);
-    m.thickness = material.thickness;
-    // Beer and Lambert: white becomes attenuation_color after attenuation_distance (KHR_materials_volume).
-    if (std::isfinite(material.attenuation_distance) && material.attenuation_distance > 0)
-        m.absorption =
-            -glm::log(glm::max(material.attenuation_color, glm::vec3(1e-6f))) / material.attenuation_distance;
-    return m;
-}
 
 GpuLight gpu_light(const Light& light) {
     GpuLight g{};
@@ -74,13 +50,10 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly,
       generators_(device, scene, assembly) {
     Commands commands(device);
     normals = upload(device, commands, "vertex normals", assembly.normals);
-    uvs = upload(device, commands, "texture coordinates", assembly.uvs);
-    colors = upload(device, commands, "vertex colours", assembly.colors);
-    has_colors = !assembly.colors.empty();
-    triangle_materials = upload(device, commands, "triangle materials", assembly.materials);
+    base_colors = upload_base_colors(device, commands, scene, assembly);
+    if (has_masks(scene, assembly.materials)) triangles.masks = &base_colors;
     triangle_ids = upload(device, commands, "places of triangles in the file", assembly.ids);
     triangle_objects = upload(device, commands, "objects of the triangles", assembly.objects);
-    upload_materials(device, commands, scene);
     std::vector<bool> used(scene.materials.size(), false);
     for (uint32_t material : assembly.materials) used[material] = true;
     for (size_t i = 0; i < used.size(); i++) has_glass |= used[i] && transmits(scene.materials[i]);
@@ -119,21 +92,6 @@ void GpuScene::record_animation(Commands& commands, const Cubes& cubes) {
     generators_.record(commands, cubes, triangles, normals, instances);
 }
 
-void GpuScene::upload_materials(Device& device, Commands& commands, const Scene& scene) {
-    std::vector<GpuMaterial> gpu_materials;
-    for (const Material& material : scene.materials) gpu_materials.push_back(gpu_material(material));
-    std::vector<GpuTexture> infos;
-    std::vector<uint32_t> all_texels;
-    for (const Texture& texture : scene.textures) {
-        const uint32_t flags = uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2 | (texture.nearest ? 16u : 0u);
-        infos.push_back({uint32_t(all_texels.size()), texture.width, texture.height, flags});
-        all_texels.insert(all_texels.end(), texture.texels.begin(), texture.texels.end());
-    }
-    materials = upload(device, commands, "materials", gpu_materials);
-    texture_infos = upload(device, commands, "texture table", infos);
-    texels = upload(device, commands, "textures", all_texels);
-}
-
 void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
     std::vector<GpuLight> list;
     for (const Light& light : scene.lights) list.push_back(gpu_light(light));
@@ -145,10 +103,9 @@ void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
 }
 
 uint64_t GpuScene::bytes() const {
-    uint64_t sum = instances.bytes() + deformer_.bytes() + generators_.bytes();
-    for (const Buffer* buffer :
-         {&triangles.positions, &triangles.triangles, &normals, &uvs, &colors, &triangle_materials, &triangle_ids,
-          &triangle_objects, &materials, &texture_infos, &texels, &lights, &environment})
+    uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
+    for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
+                                 &lights, &environment})
         sum += buffer->bytes();
     return sum;
 }
@@ -156,7 +113,6 @@ uint64_t GpuScene::bytes() const {
 void GpuScene::describe(Frame& frame) const {
     frame.tree = instances.tree();
     frame.lights = uint32_t(light_list.size());
-    frame.has_colors = has_colors;
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;
     frame.sun_cosine = sun_cosine_;

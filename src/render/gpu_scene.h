@@ -14,13 +14,14 @@ namespace peelray {
 class GpuScene {
   public:
     GpuScene(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
+    GpuScene(const GpuScene&) = delete;
+    GpuScene& operator=(const GpuScene&) = delete;
 
     TriangleBuffers triangles;  ///< in the spaces of their bodies
-    Buffer normals, uvs, colors, triangle_materials, triangle_ids, triangle_objects;
-    Buffer materials, texture_infos, texels;
+    BaseColorBuffers base_colors;
+    Buffer normals, triangle_ids, triangle_objects;
     Buffer lights, environment;
-    bool has_glass = false;  ///< some triangle lets light through
-    bool has_colors = false;
+    bool has_glass = false;            ///< some triangle lets light through
     std::vector<GpuLight> light_list;  ///< what `lights` holds
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body
@@ -38,7 +39,6 @@ class GpuScene {
     void describe(Frame& frame) const;
 
   private:
-    void upload_materials(Device& device, Commands& commands, const Scene& scene);
     void upload_lights(Commands& commands, const Scene& scene);
 
     Device& device_;

@@ -59,16 +59,8 @@ void ObjectTable::upload(Device& device, Commands& commands) {
 
 void ObjectTable::record_visibility(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
                                     const MapVisibilityParams& params) const {
-    commands.draw(device.raster_pass("map_visibility"),
-                  {{"frame", target.frame},
-                   {"positions", scene.triangles.positions},
-                   {"triangles", scene.triangles.triangles},
-                   {"triangle_materials", scene.triangle_materials},
-                   {"materials", scene.materials},
-                   {"triangle_objects", scene.triangle_objects},
-                   {"objects", without_probes_},
-                   {"instances", scene.instances.table()}},
-                  params, scene.draws, target.color, target.depth, target.visibility);
+    record_view(commands, device, "map_visibility", scene, target,
+                {{"triangle_objects", scene.triangle_objects}, {"objects", without_probes_}}, params);
 }
 
 }  // namespace peelray

@@ -1,6 +1,8 @@
 #include "render/ray_scene.h"
 
+#include "render/base_colors.h"
 #include "render/transforms.h"
+#include "scene/alpha_test.h"
 
 namespace peelray {
 
@@ -12,6 +14,10 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
       cubes_(device, assembly, choice, smallest_scales(assembly, world_matrices(scene))),
       shown_(assembly.bodies.size()) {
     Commands commands(device);
+    if (has_masks(scene, assembly.materials)) {
+        base_colors_ = upload_base_colors(device, commands, scene, assembly);
+        triangles_.masks = &base_colors_;
+    }
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
     instances_.place(commands, transforms_of(assembly.instances, world_matrices(scene)));
     for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;

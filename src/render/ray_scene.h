@@ -1,4 +1,4 @@
-// A scene for rays alone: cubes and what tells whose triangles were hit, nothing to shade with.
+// A scene for rays alone: cubes and what tells whose triangles were hit, nothing to shade with but what tells of holes.
 #pragma once
 
 #include "render/scene_cubes.h"
@@ -9,6 +9,8 @@ class RayScene {
   public:
     /// Uploads the scene in its present moment and builds its cubes.
     RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice);
+    RayScene(const RayScene&) = delete;
+    RayScene& operator=(const RayScene&) = delete;
 
     /// Records the tracing of `count` rays (Ray each): file_hits[i] (FileHit each) for rays[i], see record_trace.
     void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
@@ -22,6 +24,7 @@ class RayScene {
   private:
     Device& device_;
     TriangleBuffers triangles_;
+    BaseColorBuffers base_colors_;  ///< only where a material is masked
     Buffer triangle_ids_, hits_;
     Instances instances_;
     SceneCubes cubes_;

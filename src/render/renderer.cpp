@@ -226,12 +226,7 @@ void Renderer::Impl::build_cubes() {
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    commands.draw(device.raster_pass("visibility"),
-                  {{"frame", view.frame},
-                   {"positions", scene.triangles.positions},
-                   {"triangles", scene.triangles.triangles},
-                   {"instances", scene.instances.table()}},
-                  VisibilityParams{sample_position(sample)}, scene.draws, view.color, view.depth, view.visibility);
+    record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -276,10 +271,11 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
                                                           {"nodes", level.nodes},
                                                           {"queue", queues.counters()},
                                                           {"lights", scene.lights}});
-    const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.materials, others);
+    const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.base_colors.materials, others);
     commands.run_indirect(
-        device.pass("shadow", {shader_constant(hit), traced && scene.has_glass,
-                               shader_constant(settings.layout.traversal), shader_constant(settings.layout.batch)}),
+        device.pass("shadow",
+                    {shader_constant(hit), traced && scene.has_glass, shader_constant(settings.layout.traversal),
+                     shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact}),
         bindings, p, queues.groups(), p.level * 12);
 }
 

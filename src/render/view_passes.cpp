@@ -16,16 +16,11 @@ void ViewTarget::resize(Device& device, uint32_t width, uint32_t height) {
 std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame,
                                       std::initializer_list<Binding> others) {
     std::vector<Binding> bindings = {{"frame", frame},
-                                     {"materials", scene.materials},
-                                     {"texture_infos", scene.texture_infos},
-                                     {"texels", scene.texels},
                                      {"normals", scene.normals},
-                                     {"uvs", scene.uvs},
-                                     {"colors", scene.colors},
-                                     {"triangle_materials", scene.triangle_materials},
                                      {"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
                                      {"instances", scene.instances.table()}};
+    for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;
 }

@@ -22,6 +22,24 @@ struct ViewTarget {
 std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame,
                                       std::initializer_list<Binding> others);
 
+/// Draws the scene's triangles into `target`: NAME.vert with NAME.frag, or NAME_masked.frag where a material is masked.
+/// `others`: what NAME.vert reads beside frame, positions, triangles and instances.
+template <typename Params>
+void record_view(Commands& commands, Device& device, const std::string& name, const GpuScene& scene,
+                 const ViewTarget& target, std::initializer_list<Binding> others, const Params& params) {
+    std::vector<Binding> bindings = {{"frame", target.frame},
+                                     {"positions", scene.triangles.positions},
+                                     {"triangles", scene.triangles.triangles},
+                                     {"instances", scene.instances.table()}};
+    for (const Binding& other : others) bindings.push_back(other);
+    const bool masked = scene.triangles.masks != nullptr;
+    const RasterPass& pass = device.raster_pass(name, masked ? name + "_masked" : name);
+    for (const Binding& binding : base_color_bindings(scene.base_colors))
+        if (pass.interface().declares(binding.name)) bindings.push_back(binding);
+    commands.draw(pass, std::span<const Binding>(bindings), params, scene.draws, target.color, target.depth,
+                  target.visibility);
+}
+
 /// Camera rays and their hits, from the triangles in `target`: level 0 of the queues.
 void record_primary(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
                     PathQueues& queues, const LevelParams& params);

@@ -12,6 +12,7 @@ std::vector<BuiltinScene> builtin_scenes() {
     return {{"teapots", "two mirroring Newell teapots on a polished checkered floor"},
             {"glass", "a glass sphere, torus and block one behind the other, and a mirror"},
             {"tree", "a tree with tens of thousands of leaves, for shadows"},
+            {"leaves", "two trees whose leaves are cut out of squares by alpha masks, on a mirroring floor"},
             {"walker", "a figure that walks over a mirror, behind and in front of glass"},
             {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"},
             {"waves", "a pool with swimming things; waves:N for some N triangles of water (8 to 10000000)"},
@@ -36,6 +37,7 @@ Scene make_builtin(std::string_view name) {
     if (name == "teapots") return make_teapots();
     if (name == "glass") return make_glass();
     if (name == "tree") return make_tree();
+    if (name == "leaves") return make_leaves();
     if (name == "walker") return make_walker();
     if (name == "waves") return make_waves(32'768);
     if (name == "particles") return make_particles(3'000);

@@ -20,28 +20,6 @@ struct Branch {
     int generation;
 };
 
-glm::vec3 any_perpendicular(const glm::vec3& v) {
-    return glm::normalize(glm::cross(v, std::abs(v.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
-}
-
-/// Open tube from `from` to `to`; its ends lie inside the neighbouring branches.
-void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float from_radius, float to_radius,
-              uint32_t sides) {
-    const glm::vec3 axis = glm::normalize(to - from), x = any_perpendicular(axis), y = glm::cross(axis, x);
-    const float taper = (from_radius - to_radius) / glm::length(to - from);
-    const auto first = static_cast<uint32_t>(out.positions.size());
-    for (uint32_t i = 0; i < sides; ++i) {
-        const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
-        const glm::vec3 outwards = std::cos(angle) * x + std::sin(angle) * y;
-        const glm::vec3 normal = glm::normalize(outwards + axis * taper);
-        out.positions.insert(out.positions.end(), {from + outwards * from_radius, to + outwards * to_radius});
-        out.normals.insert(out.normals.end(), {normal, normal});
-        const uint32_t a = first + 2 * i, b = first + 2 * ((i + 1) % sides);
-        out.triangles.push_back({a, b, b + 1});
-        out.triangles.push_back({a, b + 1, a + 1});
-    }
-}
-
 /// A leaf: a diamond of two triangles, folded a little along its rib, so that light falls differently on its halves.
 void add_leaf(Primitive& out, const glm::vec3& stem, const glm::vec3& along, float length, Random& random) {
     const glm::vec3 side =

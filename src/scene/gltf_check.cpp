@@ -126,6 +126,7 @@ Members material_members() {
     return {
         text("name"),
         text("alphaMode"),
+        number("alphaCutoff"),
         numbers("emissiveFactor", 3),
         texture("normalTexture"),
         texture("occlusionTexture"),

@@ -65,8 +65,7 @@ class MaterialReader {
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
         ignore(from_.normalTexture.index, "{} normal maps ignored");
         ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
-        if (from_.alphaMode == "MASK") ++loader_.ignored["{} materials with alphaMode MASK drawn opaque"];
-        if (from_.alphaMode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
+        read_alpha_mode();
         loader_.scene.materials.push_back(std::move(material_));
         loader_.uv_sources.push_back(uv_);
     }
@@ -84,6 +83,17 @@ class MaterialReader {
             material_.metallic *= mean->z;
             ++loader_.ignored["{} metallic-roughness textures replaced by their mean"];
         }
+    }
+
+    void read_alpha_mode() {
+        const std::string& mode = from_.alphaMode;
+        if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+            fail("{}: alphaMode \"{}\" is unknown; it must be OPAQUE, MASK or BLEND",
+                 loader_.file.where("materials", index_), printable(mode, 20));
+        if (from_.alphaCutoff < 0)
+            fail("{}: alphaCutoff {} must not be below 0", loader_.file.where("materials", index_), from_.alphaCutoff);
+        if (mode == "MASK") material_.alpha_cutoff = static_cast<float>(from_.alphaCutoff);
+        if (mode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
     }
 
     void read_emission() {

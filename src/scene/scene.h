@@ -33,6 +33,7 @@ struct Material {
     std::string name;
     glm::vec3 base_color{1};         ///< linear, [0, 1]
     float alpha = 1;                 ///< base colour alpha, [0, 1]
+    float alpha_cutoff = 0;          ///< less alpha than this is a hole (AlphaTest); 0: opaque, whatever the alpha
     int base_color_texture = -1;     ///< index into Scene::textures, -1: none
     float metallic = 0;              ///< [0, 1]
     float roughness = 1;             ///< perceptual, [0, 1]; GGX alpha is its square

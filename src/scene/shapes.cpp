@@ -39,6 +39,10 @@ int SceneBuilder::tiles(uint32_t n, uint32_t first, uint32_t second, bool both_d
             const bool odd = (x / texels + (both_directions ? y / texels : 0)) % 2;
             texture.texels.push_back(0xFF000000u | (odd ? second : first));
         }
+    return this->texture(std::move(texture));
+}
+
+int SceneBuilder::texture(Texture texture) {
     scene_.textures.push_back(std::move(texture));
     return static_cast<int>(scene_.textures.size()) - 1;
 }
@@ -153,6 +157,27 @@ Primitive box(const glm::vec3& lower, const glm::vec3& upper) {
         for (const glm::uvec3& t : side.triangles) out.triangles.push_back(t + first);
     }
     return out;
+}
+
+glm::vec3 any_perpendicular(const glm::vec3& v) {
+    return glm::normalize(glm::cross(v, std::abs(v.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
+}
+
+void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float from_radius, float to_radius,
+              uint32_t sides) {
+    const glm::vec3 axis = glm::normalize(to - from), x = any_perpendicular(axis), y = glm::cross(axis, x);
+    const float taper = (from_radius - to_radius) / glm::length(to - from);
+    const auto first = static_cast<uint32_t>(out.positions.size());
+    for (uint32_t i = 0; i < sides; ++i) {
+        const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
+        const glm::vec3 outwards = std::cos(angle) * x + std::sin(angle) * y;
+        const glm::vec3 normal = glm::normalize(outwards + axis * taper);
+        out.positions.insert(out.positions.end(), {from + outwards * from_radius, to + outwards * to_radius});
+        out.normals.insert(out.normals.end(), {normal, normal});
+        const uint32_t a = first + 2 * i, b = first + 2 * ((i + 1) % sides);
+        out.triangles.push_back({a, b, b + 1});
+        out.triangles.push_back({a, b + 1, a + 1});
+    }
 }
 
 float Random::next() {

@@ -11,6 +11,7 @@ namespace peelray {
 Scene make_teapots();
 Scene make_glass();
 Scene make_tree();
+Scene make_leaves();
 Scene make_walker();
 Scene make_blob(uint64_t triangles);
 Scene make_waves(uint64_t triangles);
@@ -29,6 +30,7 @@ class SceneBuilder {
     int mesh_of(int node) const { return scene_.nodes[size_t(node)].mesh; }
     /// A texture of n×n tiles in two sRGB colours (0xBBGGRR), alternating in u, or in u and v.
     int tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions);
+    int texture(Texture texture);
     void camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees);
     Scene take() { return std::move(scene_); }
 
@@ -50,6 +52,11 @@ Primitive box(const glm::vec3& lower, const glm::vec3& upper);
 Primitive parallelogram(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, float repeat = 1);
 /// Newell's teapot: 32 bicubic patches, n×n squares each; y up, 3.15 high, standing on y = 0, the spout towards +x.
 Primitive teapot(uint32_t n);
+
+glm::vec3 any_perpendicular(const glm::vec3& v);
+/// Adds a tapered tube, open at its ends, with as many sides.
+void add_tube(Primitive& out, const glm::vec3& from, const glm::vec3& to, float from_radius, float to_radius,
+              uint32_t sides);
 
 /// A small deterministic generator (the same numbers on every machine, unlike the standard distributions).
 class Random {

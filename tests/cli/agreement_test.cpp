@@ -68,7 +68,10 @@ INSTANTIATE_TEST_SUITE_P(
     Still, Agreement,
     testing::Values(
         Case{"teapots", {"builtin:teapots", "--ldc", "1024"}}, Case{"glass", {"builtin:glass", "--ldc", "768"}},
-        Case{"tree", {"builtin:tree", "--ldc", "1024"}}, Case{"blob", {"builtin:blob:20000", "--ldc", "512"}},
+        Case{"tree", {"builtin:tree", "--ldc", "1024"}}, Case{"leaves", {"builtin:leaves", "--ldc", "1024"}},
+        Case{"leaves_samples",
+             {"builtin:leaves", "--ldc", "1024", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}},
+        Case{"blob", {"builtin:blob:20000", "--ldc", "512"}},
         Case{"samples",
              {"builtin:teapots", "--ldc", "512", "--spp", "3", "--effects", "reflection,refraction,shadow,ambient"}},
         Case{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}},

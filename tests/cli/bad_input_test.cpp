@@ -31,7 +31,7 @@ TEST_F(BadInput, FilesThatHoldNoMesh) {
     expect_bad_scene("folder.glb", "not a regular file");
     put("picture.jpg", "x");
     expect_bad_scene("picture.jpg", "the extension \".jpg\" is unknown");
-    expect_refused(run({"info", "builtin:moon"}), 1, "known are teapots, glass, tree, walker, blob:N, waves, particles");
+    expect_refused(run({"info", "builtin:moon"}), 1, "known are teapots, glass, tree, leaves, walker, blob:N, waves, particles");
     expect_refused(run({"info", "builtin:blob:7"}), 1, "8 to 10000000");
     expect_refused(run({"info", "builtin:blob:10000001"}), 1, "8 to 10000000");
     expect_refused(run({"info", ""}), 1, "");
@@ -89,6 +89,9 @@ TEST_F(BadInput, GltfRanges) {
     gltf = square_gltf();
     gltf["nodes"][0]["mesh"] = 3;
     expect_bad_gltf(gltf, "meshes");
+    gltf = square_gltf();
+    gltf["materials"] = {{{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}};
+    expect_bad_gltf(gltf, "alphaCutoff -0.5");
     expect_bad_gltf(square_gltf(), "index", square_bytes({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, {0, 1, 9, 0, 2, 3}));
     put("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
     expect_bad_scene("bad.obj", "bad.obj");

@@ -48,6 +48,18 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
                           "extensions without effect KHR_materials_sheen"});
 }
 
+TEST_F(InfoCommand, MasksAndBlending) {
+    auto gltf = square_gltf();
+    gltf["materials"] = {{{"name", "leaf"}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}},
+                         {{"name", "veil"}, {"alphaMode", "BLEND"}}};
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    const Outcome run = this->run({"info", in("square.gltf")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    expect_says(run.out, {"holes where alpha is below 0.25", "note 1 materials with alphaMode BLEND drawn opaque"});
+    EXPECT_EQ(run.out.find("MASK"), std::string::npos) << run.out;
+}
+
 TEST_F(InfoCommand, FullDiskIsReported) {
     put("cube.obj", kCube);
     std::filesystem::remove(folder / "scratch" / "stdout");

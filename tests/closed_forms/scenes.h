@@ -79,6 +79,41 @@ inline Material thin_glass(float ior = 1.5f) {
     return m;
 }
 
+// --- Holes ---
+
+/// Texels along a side of the pattern of holes.
+constexpr uint32_t kTexels = 8;
+
+/// Is the texel of the pattern there?
+inline bool is_whole(int x, int y) {
+    return (x * 5 + y * 3) % 7 < 4;
+}
+
+/// A texture of kTexels² texels whose alpha is 255 or 0.
+inline Texture pattern() {
+    Texture texture;
+    texture.width = texture.height = kTexels;
+    texture.nearest = true;
+    for (int y = 0; y < int(kTexels); y++)
+        for (int x = 0; x < int(kTexels); x++) texture.texels.push_back(is_whole(x, y) ? 0xFFFFFFFFu : 0x00FFFFFFu);
+    return texture;
+}
+
+inline Material masked(Stage& stage, Material material) {
+    if (stage.scene.textures.empty()) stage.scene.textures.push_back(pattern());
+    material.base_color_texture = 0;
+    material.alpha_cutoff = 0.5f;
+    return material;
+}
+
+/// Is the pattern there at uv, repeated? Nothing within a hair of a texel's edge.
+inline std::optional<bool> whole_at(const glm::dvec2& uv, double margin = 1e-3) {
+    const glm::dvec2 p = uv * double(kTexels), f = glm::fract(p);
+    if (std::min({f.x, f.y, 1 - f.x, 1 - f.y}) < margin) return {};
+    const auto wrapped = [](double x) { return ((int(std::floor(x)) % int(kTexels)) + int(kTexels)) % int(kTexels); };
+    return is_whole(wrapped(p.x), wrapped(p.y));
+}
+
 // --- Shapes ---
 
 /// Flat faces, each a convex polygon, counter-clockwise from outside.

@@ -16,11 +16,13 @@ struct SingleCube {
 
     SingleCube(Device& device, Commands& commands, std::span<const glm::vec3> positions,
                std::span<const glm::uvec3> indices, const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution,
-               Sampling sampling, const CubeLayout& layout = {}, float tolerance = 0)
+               Sampling sampling, const CubeLayout& layout = {}, float tolerance = 0,
+               const BaseColorBuffers* masks = nullptr)
         : triangles(device, positions, indices),
           cubes(device, {{0, uint32_t(indices.size()), resolution, lower, upper, tolerance}}, sampling, layout),
           builder(device, commands, cubes, 0, 1),
           instances(device, {{0, 0, 0}}) {
+        triangles.masks = masks;
         const GpuTransform here{glm::mat3(1), glm::vec3(0)};
         instances.place(commands, std::span<const GpuTransform>(&here, 1));
         build(commands);

@@ -94,6 +94,79 @@ TEST(Oracle, EqualsTheLoopOverAllTriangles) {
     EXPECT_GT(hits, 20000u);
 }
 
+/// A scene whose only material has holes, and whose geometry is `geometry` with random texture coordinates.
+Scene with_holes(Geometry& geometry) {
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.materials[0].alpha_cutoff = 0.5f;
+    scene.materials[0].base_color_texture = 0;
+    Texture texture;
+    texture.width = texture.height = 16;
+    Random random(3);
+    for (int i = 0; i < 256; i++) texture.texels.push_back(uint32_t(128 + 127 * random.point(1).x) << 24);
+    scene.textures.push_back(texture);
+    geometry.materials.assign(geometry.triangles.size(), 0);
+    for (size_t i = 0; i < geometry.positions.size(); i++) geometry.uvs.emplace_back(glm::vec2(random.point(2)));
+    return scene;
+}
+
+TEST(Oracle, HitsInHolesDoNotCount) {
+    Geometry geometry = soup(800, 7);
+    const Scene scene = with_holes(geometry);
+    const AlphaTest alpha(scene, geometry);
+    const Oracle oracle(geometry, alpha), opaque(geometry);
+    Random random(11);
+    size_t through = 0, hits = 0, asked = 0, refused = 0;
+    for (int i = 0; i < 10000; ++i) {
+        const OracleRay ray = random_ray(random, geometry, glm::vec3(0), 1);
+        const OracleHit fast = oracle.closest(ray), slow = closest_brute_force(geometry, ray, ~0u, alpha),
+                        whole = opaque.closest(ray);
+        ASSERT_EQ(fast.triangle, slow.triangle);
+        ASSERT_EQ(fast.t, slow.t);
+        ASSERT_GE(fast.t, whole.t);
+        ASSERT_EQ(oracle.check(ray, slow.t, slow.triangle), Verdict::same);
+        ASSERT_EQ(oracle.check_any(ray, slow.hit()), Verdict::same);
+        hits += fast.hit();
+        if (!fast.hit()) continue;
+        ASSERT_TRUE(alpha.is_present(fast.triangle, fast.u, fast.v));
+        if (fast.triangle == whole.triangle) continue;
+        // What lies before it is a hole; who does not see it is wrong, unless its edge is near.
+        ASSERT_FALSE(alpha.is_present(whole.triangle, whole.u, whole.v));
+        through++;
+        if (through % 10 == 0 && fast.t > 1.01 * whole.t) {
+            asked++;
+            refused += oracle.check(ray, whole.t, whole.triangle) == Verdict::wrong;
+        }
+    }
+    EXPECT_GT(hits, 3000u);
+    EXPECT_GT(through, 500u);
+    EXPECT_GE(refused, asked * 4 / 5);  // some of the rays are aimed at edges
+    EXPECT_GT(asked, 50u);
+}
+
+TEST(Oracle, AnAnswerBesideAHolesEdgeIsRight) {
+    // Half a square is there: x below 0.5.
+    Geometry geometry;
+    geometry.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
+    geometry.materials = {0, 0};
+    for (const glm::vec3& p : geometry.positions) geometry.colors.emplace_back(1, 1, 1, 1 - p.x);
+    geometry.uvs.resize(4);
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.materials[0].alpha_cutoff = 0.5f;
+    const Oracle oracle(geometry, AlphaTest(scene, geometry));
+    const auto at = [](double x) { return OracleRay{{x, 0.3, 1}, 0, {0, 0, -1}, infinity}; };
+    EXPECT_TRUE(oracle.closest(at(0.499)).hit());
+    EXPECT_FALSE(oracle.closest(at(0.501)).hit());
+    EXPECT_EQ(oracle.check(at(0.499999), infinity, ~0u), Verdict::within_offset);
+    EXPECT_EQ(oracle.check(at(0.502), 1, 0), Verdict::wrong);
+    EXPECT_EQ(oracle.check(at(0.498), infinity, ~0u), Verdict::wrong);
+    EXPECT_EQ(oracle.check_any(at(0.499999), false), Verdict::within_offset);
+    EXPECT_EQ(oracle.check_any(at(0.498), false), Verdict::wrong);
+    EXPECT_EQ(oracle.check_any(at(0.502), true), Verdict::wrong);
+}
+
 /// An intersection of another kind: signed volumes in extended precision. It must agree wherever it is sure.
 TEST(Oracle, AgreesWithSignedVolumes) {
     const Geometry geometry = soup(300, 3);

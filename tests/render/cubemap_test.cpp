@@ -73,6 +73,22 @@ TEST_F(CubemapTracerTest, MirrorBallShowsALargeRoom) {
     }
 }
 
+TEST_F(CubemapTracerTest, ProbesSeeThroughHoles) {
+    // Between the room and the ball there is a shell with holes, which the camera looks through as well.
+    Stage stage;
+    stage.add(sphere({0, 0, 0}, 0.1f, 32), plane_mirror());
+    stage.add(room(50, [&](glm::vec3) { return glm::vec3(0.1f, 0.2f, 0.9f); }), unlit({1, 1, 1}));
+    stage.add(room(40, [&](glm::vec3) { return glm::vec3(0.9f, 0.3f, 0.1f); }), masked(stage, unlit({1, 1, 1})));
+    const RenderSettings settings = settings_for(perspective({0.2f, 0.3f, 1}, {0, 0, 0}, 10), 96);
+    const RenderResult traced = render(stage, black, settings);
+    size_t through = 0, onto = 0;
+    for (const glm::vec4& pixel : traced.radiance) (pixel.z > pixel.x ? through : onto)++;
+    EXPECT_GT(through, 1500u);
+    EXPECT_GT(onto, 1500u);
+    // Texels blur the outlines of the holes.
+    tally(cubemap(stage, black, settings), traced, 0.02).expect(0.06, 96 * 96);
+}
+
 TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
     // In a white room rough metal looks as it does under a white sky, whatever the level; the probe, not the sky, is
     // seen.

@@ -178,6 +178,39 @@ TEST_F(MovingTest, AMomentLooksLikeTheSameSceneStandingStill) {
     }
 }
 
+TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
+    for (const HitTest hit : {HitTest::exact, HitTest::planar}) {
+        SCOPED_TRACE(int(hit));
+        Stage stage;
+        stage.scene = three_balls();
+        Scene& scene = stage.scene;
+        for (const int material : {1, 2})
+            scene.materials[size_t(material)] = masked(stage, scene.materials[size_t(material)]);
+        // Spheres without texture coordinates: the same as their positions.
+        for (Mesh& mesh : scene.meshes)
+            for (Primitive& primitive : mesh.primitives) {
+                primitive.uvs.clear();
+                for (const vec3& p : primitive.positions) primitive.uvs.emplace_back(p.x + 0.3f * p.z, p.y);
+            }
+        const auto renderer = renderer_in(scene, "0", 0, sky);
+        RenderSettings settings = small(kView, hit);
+        settings.width = settings.height = 96;
+        if (hit == HitTest::planar) settings.ldc = 256;
+        const RenderResult moved = at(*renderer, scene, "0", 1.2, settings);
+        RenderSettings reference = settings;
+        reference.hit = HitTest::exact;
+        reference.ldc = 64;
+        Scene still = scene;
+        still.animations.clear();
+        reference.bounds = settings.bounds = bounds(scene);
+        Renderer other(device(), still, assemble(still, motion_of(still, "")), sky);
+        tally(moved, other.render(reference), 5e-3).expect(hit == HitTest::exact ? 0.002 : 0.05, 96 * 96);
+        for (Material& material : still.materials) material.alpha_cutoff = 0;
+        Renderer opaque(device(), still, assemble(still, motion_of(still, "")), sky);
+        EXPECT_GT(tally(moved, opaque.render(reference), 5e-3).wrong, 500u) << "the holes are seen";
+    }
+}
+
 TEST_F(MovingTest, HundredsOfFramesLoseNothingAndKeepNoMemory) {
     // A soup that spreads and draws together again: its samples, nodes and cells grow and shrink by orders of magnitude.
     Scene scene;

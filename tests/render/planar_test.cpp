@@ -66,6 +66,17 @@ TEST_F(PlanarTest, NoAcneInLampLight) {
         .expect(0.02, 128 * 128);
 }
 
+TEST_F(PlanarTest, HolesAreSeenInMirrorsAndLetLightThrough) {
+    Stage stage;
+    stage.add(ground(2), plane_mirror());
+    stage.add(parallelogram({-1.5f, 0.1f, -1}, {3, 0, 0}, {0, 2, 0}), masked(stage, lambert({0.9f, 0.3f, 0.1f})));
+    stage.add(parallelogram({-2, 0, -1.6f}, {4, 0, 0}, {0, 3, 0}), lambert({0.3f, 0.5f, 0.9f}));
+    stage.sun({-0.2f, -0.5f, -1}, glm::vec3(2));
+    const Camera camera = perspective({0.3f, 0.8f, 2.5f}, {0, 0.3f, -1}, 60);
+    tally(render(stage, black, with(camera, HitTest::exact)), render(stage, black, with(camera, HitTest::planar)), 0.02)
+        .expect(0.03, 128 * 128);
+}
+
 TEST_F(PlanarTest, ColouredGlassTintsItsShadow) {
     // A pane whose tint changes from corner to corner, straight above the floor.
     Stage stage;

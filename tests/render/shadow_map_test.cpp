@@ -179,6 +179,28 @@ TEST_F(ShadowMapTest, ContactShadowsTouchTheirBox) {
         .expect(0, 30000);
 }
 
+TEST_F(ShadowMapTest, LightFallsThroughHoles) {
+    for (const bool lamp : {false, true}) {
+        SCOPED_TRACE(lamp);
+        Stage stage;
+        stage.add(ground(3), lambert({1, 1, 1}));
+        stage.add(parallelogram({-1, 1, 1}, {2, 0, 0}, {0, 0, -2}), masked(stage, lambert({1, 0, 0})));
+        if (lamp)
+            stage.lamp({0, 3, 0}, {10, 10, 10});
+        else
+            stage.sun({0, -1, 0}, glm::vec3(kPi));
+        const double grow = lamp ? 1.5 : 1;  // of the shadow beside the pane
+        const Camera camera = orthographic({0, 0.9f, 0}, {0, 0, 0}, 2.2f, {0, 0, -1});
+        const RenderResult picture = lit(stage, settings_for(camera, 192));
+        const auto covered = [&](glm::dvec3 p) { return *whole_at({(p.x / grow + 1) / 2, (1 - p.z / grow) / 2}, 0); };
+        outline(
+            picture, camera, 0.02, covered,
+            [&](glm::dvec3 p) { return std::max(std::abs(p.x), std::abs(p.z)) > 0.97 * grow; },
+            [&](glm::dvec3 p) { return lamp ? 30 / std::pow(glm::length(glm::dvec3(0, 3, 0) - p), 3) / kPi : 1; })
+            .expect(0, 10000);
+    }
+}
+
 TEST_F(ShadowMapTest, GlassCastsNone) {
     Stage stage;
     stage.add(ground(2), lambert({1, 1, 1}));

@@ -3,6 +3,7 @@
 #include <map>
 #include <tuple>
 
+#include "scene/alpha_test.h"
 #include "scene_files.h"
 
 namespace peelray::testing {
@@ -44,8 +45,8 @@ void expect_sound(const Geometry& g, const std::string& name) {
 
 TEST(Builtin, AllAreSound) {
     for (const char* name :
-         {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:walker", "builtin:blob:5000", "builtin:waves",
-          "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
+         {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:leaves", "builtin:walker", "builtin:blob:5000",
+          "builtin:waves", "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
         const Scene scene = load_scene(name);
         EXPECT_TRUE(scene.name.starts_with(name)) << scene.name << " for " << name;
         EXPECT_EQ(scene.cameras.size(), 1u);
@@ -54,7 +55,7 @@ TEST(Builtin, AllAreSound) {
 }
 
 TEST(Builtin, ListNamesWhatCanBeMade) {
-    ASSERT_EQ(builtin_scenes().size(), 7u);
+    ASSERT_EQ(builtin_scenes().size(), 8u);
     for (const BuiltinScene& scene : builtin_scenes()) {
         EXPECT_FALSE(scene.description.empty());
         if (scene.name == "blob:N") continue;
@@ -114,6 +115,22 @@ TEST(Builtin, TreeHasManyLeaves) {
     EXPECT_GE(leaves, 15000u);
     EXPECT_LE(leaves, 60000u);
     EXPECT_EQ(flatten(make_builtin("tree")).positions, flatten(scene).positions);  // deterministic
+}
+
+TEST(Builtin, LeavesAreCutOut) {
+    const Scene scene = make_builtin("leaves");
+    const Geometry geometry = flatten(scene);
+    const AlphaTest alpha(scene, geometry);
+    size_t masked = 0, present = 0, places = 0;
+    for (uint32_t i = 0; i < geometry.triangles.size(); i++) {
+        if (!alpha.is_masked(i)) continue;
+        masked++;
+        for (const double u : {0.1, 0.3, 0.5})
+            for (const double v : {0.1, 0.3, 0.45}) present += alpha.is_present(i, u, v), places++;
+    }
+    EXPECT_EQ(masked, 2u * 2 * 420);  // two trees of squares
+    EXPECT_GT(present, places / 5);
+    EXPECT_LT(present, places * 4 / 5);
 }
 
 TEST(Builtin, BlobMeetsItsNumber) {
@@ -238,7 +255,7 @@ TEST(Builtin, Bad) {
          {"builtin:", "builtin:nothing", "builtin:blob", "builtin:blob:", "builtin:blob:7", "builtin:blob:10000001",
           "builtin:blob:-8", "builtin:blob:1e6", "builtin:blob:99999999999999999999", "builtin:blob:12 "})
         error_of(name);
-    EXPECT_MENTIONS(error_of("builtin:nothing"), "teapots, glass, tree, walker, blob:N, waves, particles");
+    EXPECT_MENTIONS(error_of("builtin:nothing"), "teapots, glass, tree, leaves, walker, blob:N, waves, particles");
 }
 
 }  // namespace

@@ -79,6 +79,28 @@ TEST(GltfBad, WrongTypesEverywhere) {
             }
 }
 
+TEST(GltfBad, AlphaModesAndCutoffs) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["material"] = 0;
+    const auto with = [&](const json& material) {
+        gltf["materials"] = {material};
+        return error_of(folder, gltf);
+    };
+    EXPECT_MENTIONS(with({{"alphaMode", "CUTOUT"}}),
+                    "materials[0]: alphaMode \"CUTOUT\" is unknown; it must be OPAQUE, MASK or BLEND");
+    EXPECT_MENTIONS(with({{"alphaMode", "mask"}}), "unknown");
+    EXPECT_MENTIONS(with({{"alphaMode", "MA\nSK"}}), "unknown");
+    EXPECT_MENTIONS(with({{"alphaMode", 1}}), "materials[0].alphaMode: is number, must be a string");
+    EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", "high"}}),
+                    "materials[0].alphaCutoff: is string, must be a number");
+    EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", nullptr}}), "must be a number");
+    EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", -0.1}}),
+                    "materials[0]: alphaCutoff -0.1 must not be below 0");
+    EXPECT_MENTIONS(with({{"alphaCutoff", -1}}), "must not be below 0");
+    EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", 1e300}}), "floating point");
+}
+
 TEST(GltfBad, TruncatedJson) {
     const TempFolder folder;
     const std::string whole = square().dump();

@@ -1,9 +1,11 @@
 // What a correct glTF file must give.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "scene/alpha_test.h"
 #include "scene_files.h"
 
 namespace peelray::testing {
@@ -274,6 +276,74 @@ TEST(Gltf, Materials) {
     EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_clearcoat"});
     EXPECT_EQ(scene.extensions_used.size(), 2u);
     EXPECT_TRUE(has_note(scene, "BLEND"));
+}
+
+/// Shares of alpha that are there, at the corners of the square: (0, 0), (1, 0), (1, 1) of its first triangle.
+std::array<bool, 3> corners_present(const Scene& scene) {
+    const Geometry geometry = flatten(scene);
+    const AlphaTest alpha(scene, geometry);
+    return {alpha.is_present(0, 0, 0), alpha.is_present(0, 1, 0), alpha.is_present(0, 0, 1)};
+}
+
+TEST(Gltf, AlphaModes) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["material"] = 0;
+    const auto with = [&](const json& material) {
+        gltf["materials"] = {material};
+        return load(folder, gltf);
+    };
+    const json factor = {{"baseColorFactor", {1, 1, 1, 0.4}}};
+    const auto all = [](bool present) { return std::array<bool, 3>{present, present, present}; };
+
+    Scene scene = with({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", factor}});
+    EXPECT_FLOAT_EQ(scene.materials.at(0).alpha, 0.4f);
+    EXPECT_FLOAT_EQ(scene.materials.at(0).alpha_cutoff, 0.5f) << "the format's default";
+    EXPECT_EQ(corners_present(scene), all(false));
+    EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+    scene = with({{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}, {"pbrMetallicRoughness", factor}});
+    EXPECT_FLOAT_EQ(scene.materials.at(0).alpha_cutoff, 0.25f);
+    EXPECT_EQ(corners_present(scene), all(true));
+    // An alpha that equals the cutoff is there; a cutoff of 0 leaves nothing out, one above 1 leaves nothing.
+    EXPECT_EQ(corners_present(with({{"alphaMode", "MASK"}, {"alphaCutoff", 0.4}, {"pbrMetallicRoughness", factor}})),
+              all(true));
+    EXPECT_EQ(corners_present(with({{"alphaMode", "MASK"}, {"alphaCutoff", 0}, {"pbrMetallicRoughness", factor}})),
+              all(true));
+    EXPECT_EQ(corners_present(with({{"alphaMode", "MASK"}, {"alphaCutoff", 1}})), all(true));
+    EXPECT_EQ(corners_present(with({{"alphaMode", "MASK"}, {"alphaCutoff", 1.01}})), all(false));
+
+    EXPECT_EQ(corners_present(with({{"alphaMode", "OPAQUE"}, {"alphaCutoff", 0.9}, {"pbrMetallicRoughness", factor}})),
+              all(true));
+    EXPECT_EQ(corners_present(with({{"alphaCutoff", 0.9}, {"pbrMetallicRoughness", factor}})), all(true));
+    scene = with({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", factor}});
+    EXPECT_EQ(scene.materials.at(0).alpha_cutoff, 0);
+    EXPECT_EQ(corners_present(scene), all(true));
+    EXPECT_TRUE(has_note(scene, "1 materials with alphaMode BLEND drawn opaque"));
+}
+
+TEST(Gltf, MasksMultiplyFactorTextureAndVertexAlpha) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["material"] = 0;
+    gltf["materials"] = json::parse(
+        R"([{"alphaMode": "MASK", "alphaCutoff": 0.3, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}}])");
+    primitive(gltf)["attributes"]["COLOR_0"] =
+        add_accessor(gltf, pack<float>({1, 1, 1, 0.5f, 1, 1, 1, 0.7f, 1, 1, 1, 1, 1, 1, 1, 1}), 5126, "VEC4", 4);
+    EXPECT_EQ(corners_present(load(folder, gltf)), (std::array<bool, 3>{false, true, true}));
+    // A texture of 2×1 texels: opaque, then an alpha of 204/255.
+    gltf["images"] = {
+        {{"uri",
+          "data:image/"
+          "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAADElEQVR42mP4DwFnACOyB8axSYLdAAAAAElFTkSuQmCC"}}};
+    gltf["samplers"] = {{{"wrapS", 33071}, {"magFilter", 9728}}};
+    gltf["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    primitive(gltf)["attributes"]["TEXCOORD_0"] =
+        add_accessor(gltf, pack<float>({0, 0, 1, 0, 1, 1, 0, 1}), 5126, "VEC2", 4);
+    const Scene scene = load(folder, gltf);
+    EXPECT_EQ(scene.textures.at(0).texels.at(0) >> 24, 255u);
+    EXPECT_EQ(scene.textures.at(0).texels.at(1) >> 24, 204u);
+    EXPECT_EQ(corners_present(scene), (std::array<bool, 3>{false, false, true}));
 }
 
 TEST(Gltf, BaseColorTextureWithTransformAndSampler) {

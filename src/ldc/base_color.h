@@ -1,0 +1,32 @@
+// What tells the base colour of triangles and its alpha, on the device.
+#pragma once
+
+#include <vector>
+
+#include "gpu/commands.h"
+
+namespace peelray {
+
+struct TriangleBuffers;
+
+/// The bindings of shaders/base_color_buffers.glsl.
+struct BaseColorBuffers {
+    Buffer materials;           ///< GpuMaterial each
+    Buffer texture_infos;       ///< GpuTexture each
+    Buffer texels;              ///< uint32 each: sRGB-encoded colour and alpha
+    Buffer uvs;                 ///< vec2 per vertex
+    Buffer colors;              ///< vec4 per vertex; read where a material is MATERIAL_COLORED
+    Buffer triangle_materials;  ///< uint32 per triangle
+
+    uint64_t bytes() const {
+        return materials.bytes() + texture_infos.bytes() + texels.bytes() + uvs.bytes() + colors.bytes() +
+               triangle_materials.bytes();
+    }
+};
+
+std::vector<Binding> base_color_bindings(const BaseColorBuffers& buffers);
+
+/// The same for a pass that tests the alpha of masked triangles. Without any it reads none of them: positions stand in.
+std::vector<Binding> alpha_bindings(const TriangleBuffers& triangles);
+
+}  // namespace peelray

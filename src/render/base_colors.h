@@ -1,0 +1,19 @@
+// Materials, textures and what of vertices they read, uploaded.
+#pragma once
+
+#include "ldc/base_color.h"
+#include "scene/assembly.h"
+
+namespace peelray {
+
+/// A buffer that holds `data`; never empty, so that it can be bound.
+template <typename T>
+Buffer upload(Device& device, Commands& commands, const char* name, const std::vector<T>& data) {
+    Buffer buffer(device, name, std::max<size_t>(data.size(), 1) * sizeof(T));
+    if (!data.empty()) commands.upload(buffer, std::span<const T>(data));
+    return buffer;
+}
+
+BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly);
+
+}  // namespace peelray

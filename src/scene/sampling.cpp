@@ -1,0 +1,47 @@
+#include "scene/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/encoding.h"
+
+namespace peelray {
+namespace {
+
+int wrap(int i, int size, Texture::Wrap mode) {
+    if (mode == Texture::Wrap::clamp) return std::clamp(i, 0, size - 1);
+    const int period = mode == Texture::Wrap::repeat ? size : 2 * size;
+    const int m = ((i % period) + period) % period;
+    return m < size ? m : period - 1 - m;
+}
+
+template <typename Decode>
+auto sample(const Texture& texture, const glm::dvec2& uv, Decode decode) {
+    const auto fetch = [&](int x, int y) {
+        const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
+        const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
+        return decode(texture.texels[row * texture.width + column]);
+    };
+    // Repeats are dropped, so that any coordinate fits an int.
+    const auto place = [](double x, Texture::Wrap mode) {
+        return mode == Texture::Wrap::clamp ? std::clamp(x, 0.0, 1.0) : x - 2 * std::floor(x / 2);
+    };
+    const glm::dvec2 p(place(uv.x, texture.wrap_u) * texture.width, place(uv.y, texture.wrap_v) * texture.height);
+    if (texture.nearest) return fetch(int(std::floor(p.x)), int(std::floor(p.y)));
+    return bilinear(p, fetch);
+}
+
+}  // namespace
+
+glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv) {
+    return sample(texture, uv, [](uint32_t texel) {
+        const auto channel = [&](int i) { return srgb_to_linear((texel >> (8 * i) & 255) / 255.0); };
+        return glm::dvec3(channel(0), channel(1), channel(2));
+    });
+}
+
+double sample_alpha(const Texture& texture, const glm::dvec2& uv) {
+    return sample(texture, uv, [](uint32_t texel) { return (texel >> 24) / 255.0; });
+}
+
+}  // namespace peelray

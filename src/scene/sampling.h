@@ -1,0 +1,24 @@
+// Texture lookups in double precision, by the rules of shaders/textures.glsl.
+#pragma once
+
+#include <cmath>
+
+#include "scene/scene.h"
+
+namespace peelray {
+
+/// Bilinear between the four values around `p` (values lie at half-integers); `fetch`: the value at column x, row y.
+template <typename Fetch>
+auto bilinear(const glm::dvec2& p, Fetch fetch) {
+    const glm::dvec2 q = p - 0.5, f = q - glm::floor(q);
+    const int x = int(std::floor(q.x)), y = int(std::floor(q.y));
+    return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
+                    f.y);
+}
+
+/// Linear colour; wrapped, nearest or bilinear as the texture says, without mipmaps.
+glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv);
+/// The same of alpha, [0, 1].
+double sample_alpha(const Texture& texture, const glm::dvec2& uv);
+
+}  // namespace peelray
