@@ -168,8 +168,8 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     }
     if (s.contains("ldc")) {
         const Json& cube = s["ldc"];
-        facts.emplace_back("cubes", fmt::format("{} of up to {}³, {} hits", cube["count"].get<uint32_t>(), cube["n"].get<uint32_t>(),
-                                               s["hit"].get<std::string>()));
+        facts.emplace_back("cubes", fmt::format("{} of up to {}³, {} hits", cube["count"].get<uint32_t>(),
+                                                cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
         facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
         facts.emplace_back("cubes in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
     }

@@ -90,6 +90,9 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     made.stats = render_stats(*device_, result, scene_.triangles, scene_.bounds);
     made.device = device_->info().name;
     made.times = s.frames;
+    const std::string note = tolerance_note(s.bodies, s.choice);
+    if (!note.empty() && !noted_tolerance_) print_note(note);
+    noted_tolerance_ |= !note.empty();
     if (s.cubes.bodies)
         made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
                                    s.cubes.resolution, name_of(s.hit));

@@ -60,8 +60,9 @@ class PictureMaker {
         HitTest hit;
         bool operator==(const Kind&) const = default;
     } kind_{};
-    std::optional<double> posed_;  ///< the moment that the renderer is in
-    bool noted_ = false;  ///< said what a tracer cannot do
+    std::optional<double> posed_;   ///< the moment that the renderer is in
+    bool noted_ = false;            ///< said what a tracer cannot do
+    bool noted_tolerance_ = false;  ///< said that it is too small
 };
 
 }  // namespace peelray

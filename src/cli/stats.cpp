@@ -34,6 +34,21 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
             {"box", box_stats(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
 }
 
+std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {
+    if (choice.hit != HitTest::tolerance) return {};
+    // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.
+    const LdcBody* worst = nullptr;
+    const auto voxels = [](const LdcBody& body) { return body.tolerance * body.grid.inv_voxel; };
+    for (const LdcBody& body : bodies)
+        if (!worst || voxels(body) < voxels(*worst)) worst = &body;
+    if (!worst || !(voxels(*worst) < 0.5f)) return {};
+    return fmt::format(
+        "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; --tolerance {:.2g} "
+        "makes "
+        "it a pixel",
+        choice.tolerance, voxels(*worst), choice.tolerance / voxels(*worst));
+}
+
 Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
                 const Box& box, const CubeChoice& choice) {
     const bool by_pixel = choice.layout.by_pixel();

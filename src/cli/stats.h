@@ -11,6 +11,10 @@ namespace peelray {
 
 /// Device, driver, API version and the build's commit.
 nlohmann::ordered_json device_stats(const Device& device);
+/// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:
+/// nothing. `bodies`: with the grids of their cubes.
+std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice);
+
 /// The cubes: N (the largest), box, samples, layers, bytes, builder, and each one's own (the first 64). `bodies`: with
 /// the cubes' grids; `shown`: instances of each; `box`: of the whole scene.
 nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,

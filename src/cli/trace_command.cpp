@@ -95,6 +95,9 @@ void run_trace(const TraceArguments& a) {
     RayScene traced_scene(device, scene, assemble(scene, motion_of(scene, "")), choice);
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();
+    Commands commands(device);
+    const std::string note = tolerance_note(traced_scene.download_bodies(commands), choice);
+    if (!note.empty()) print_note(note);
     write_hits(a.hits, traced.hits);
     if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced_scene, traced, a.any_hit));
 

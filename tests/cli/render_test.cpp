@@ -230,6 +230,47 @@ TEST_F(RenderCommand, HitTestsAndResolutions) {
                                    "--material", "mirror", "--floor"});
 }
 
+const std::vector<std::vector<std::string>> kByPixel = {{"--traversal", "two-level"},
+                                                        {"--traversal", "two-level", "--block", "3x16"},
+                                                        {"--traversal", "two-level", "--batch", "layers"},
+                                                        {"--traversal", "two-level", "--batch", "rays"},
+                                                        {"--traversal", "mipmap"}};
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+TEST_F(RenderCommand, EveryTraversalMakesTheSamePicture) {
+    const std::string voxels = bytes("builtin:glass", {"--hit", "exact", "--ldc", "64"});
+    for (const auto& options : kByPixel)
+        EXPECT_TRUE(bytes("builtin:glass", joined({"--hit", "exact", "--ldc", "64"}, options)) == voxels)
+            << options.back();
+    const std::vector<std::string> all = {"--hit", "tolerance", "--ldc", "128", "--tolerance", "0.06"};
+    const std::string first = bytes("builtin:glass", joined(all, kByPixel.front()));
+    EXPECT_TRUE(bytes("builtin:glass", joined(all, kByPixel.back())) == first);
+    EXPECT_TRUE(bytes("builtin:glass", joined(joined(all, kByPixel.front()), {"--depth", "16"})) != first)
+        << "coarser depths change something";
+}
+
+TEST_F(RenderCommand, MovingThingsInTheOrderByPixel) {
+    const std::vector<std::string> moment = {"--time", "0.7", "--hit", "exact", "--ldc", "64"};
+    for (const std::string scene : {"builtin:walker", "builtin:particles:20"})
+        EXPECT_TRUE(bytes(scene, joined(moment, kByPixel[0])) == bytes(scene, moment)) << scene;
+}
+
+TEST_F(RenderCommand, AToleranceBelowThePixelsIsNoted) {
+    const Outcome fine = render("builtin:glass", {"--hit", "tolerance", "--ldc", "128", "--tolerance", "0.1"});
+    EXPECT_EQ(fine.err, "");
+    const Outcome coarse = render("builtin:glass", {"--hit", "tolerance", "--ldc", "128", "--tolerance", "0.001"});
+    EXPECT_EQ(coarse.status, 0);
+    EXPECT_NE(coarse.err.find("rays slip through"), std::string::npos) << coarse.err;
+    std::filesystem::remove(out("a.png"));
+    // By voxel a sample's depth is kept near its voxel.
+    expect_refused(render("builtin:glass", {"--hit", "tolerance", "--ldc", "512", "--tolerance", "0.5"}), 1,
+                   "--traversal two-level");
+}
+
 TEST_F(RenderCommand, ValidationLayersAreSilent) {
     expect_done(
         render("builtin:glass",

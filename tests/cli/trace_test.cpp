@@ -118,6 +118,30 @@ TEST_F(TraceCommand, PlanarFindsTheSameFaces) {
     }
 }
 
+TEST_F(TraceCommand, ByPixelTheHitsAreTheSame) {
+    for (const std::vector<std::string> options : {std::vector<std::string>{"--traversal", "two-level"},
+                                                   {"--traversal", "mipmap"},
+                                                   {"--traversal", "two-level", "--block", "2x32", "--batch", "layers"},
+                                                   {"--traversal", "mipmap", "--batch", "rays"}}) {
+        SCOPED_TRACE(options.back());
+        expect_known(trace(known_rays(), options));
+    }
+}
+
+TEST_F(TraceCommand, TolerancesFindTheSameFaces) {
+    for (const std::string traversal : {"voxel", "two-level", "mipmap"}) {
+        SCOPED_TRACE(traversal);
+        const auto hits = trace(
+            known_rays(), {"--hit", "tolerance", "--ldc", "128", "--tolerance", "0.01", "--traversal", traversal});
+        for (size_t i = 0; i < hits.size(); i++) {
+            EXPECT_EQ(hits[i].triangle / 2, kKnown[i].hit.triangle / 2) << i;
+            if (hits[i].triangle != kMiss) {
+                EXPECT_NEAR(hits[i].t, kKnown[i].hit.t, 0.011) << i;
+            }
+        }
+    }
+}
+
 TEST_F(TraceCommand, RaysWithoutMeaningMiss) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     for (const HitRecord& hit : trace({0.5f, 0.25f, 3, 0,   0,   0, 0,  100,  //
