@@ -16,9 +16,9 @@ struct SingleCube {
 
     SingleCube(Device& device, Commands& commands, std::span<const glm::vec3> positions,
                std::span<const glm::uvec3> indices, const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution,
-               Sampling sampling)
+               Sampling sampling, const CubeLayout& layout = {})
         : triangles(device, positions, indices),
-          cubes(device, {{0, uint32_t(indices.size()), resolution, lower, upper}}, sampling),
+          cubes(device, {{0, uint32_t(indices.size()), resolution, lower, upper}}, sampling, layout),
           builder(device, commands, cubes, 0, 1),
           instances(device, {{0, 0, 0}}) {
         const GpuTransform here{glm::mat3(1), glm::vec3(0)};
