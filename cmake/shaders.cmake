@@ -4,9 +4,10 @@ find_program(GLSLC glslc REQUIRED)
 find_program(SPIRV_OPT spirv-opt REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
-# peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .frag and .geom of DIR.
+# peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .tesc, .tese, .geom and .frag of DIR.
 function(peelray_embed_shaders target dir)
-  file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.comp ${dir}/*.vert ${dir}/*.frag ${dir}/*.geom)
+  file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.comp ${dir}/*.vert ${dir}/*.tesc ${dir}/*.tese ${dir}/*.geom
+       ${dir}/*.frag)
   set(objects)
   foreach(source ${sources})
     get_filename_component(file ${source} NAME)

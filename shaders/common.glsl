@@ -3,6 +3,7 @@
 #define PEELRAY_COMMON_GLSL
 
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 // A storage buffer `name` of elements of `type`. Commands::run finds it by its name, less "_block".
@@ -13,6 +14,9 @@
 // word by word.
 #define BUFFER_ALIGNED(access, index, type, name) \
     layout(set = 0, binding = index, std430) access buffer name##_block { type name[]; };
+
+// An image of several layers, read texel by texel: `type` is texture2DArray or utexture2DArray.
+#define IMAGE(index, type, name) layout(set = 0, binding = index) uniform type name;
 
 // The pass's parameters: one struct from params.h.
 #define PARAMS(type) \

@@ -18,15 +18,21 @@ LdcPlace ldcPlaceOf(uint body) {
     return LdcPlace(grid, ldcFirstCell(body), bodies[body].tolerance * grid.inv_voxel);
 }
 
+/// Writes the by-pixel fragment of a triangle whose depth is known already.
+void ldcWriteDepth(uint position, ivec2 pixel, uint id, LdcPlace place, float w) {
+    if (position < params.fragment_capacity)
+        fragments[position] = LdcFragment(place.first_cell + ldcPixelOfBody(uvec2(pixel), id & 3u, place.grid.dims), id, floatBitsToUint(w));
+}
+
 /// Fragments of the triangle in the pixel: counted if `write` is false, else written from `position` on. Returns how many.
 uint ldcEmitPixel(LdcTriangle t, ivec2 pixel, uint id, LdcPlace place, bool write, uint position) {
     const uint axis = id & 3u;
     const uvec3 dims = place.grid.dims;
     if (params.by_pixel != 0u) {
-        if (write && position < params.fragment_capacity) {
+        if (write) {
             float w = ldcDepth(t, vec2(pixel) + 0.5);
             if (params.by_pixel == 2u) w = ldcRoundDepth(w, float(dims[axis]));
-            fragments[position] = LdcFragment(place.first_cell + ldcPixelOfBody(uvec2(pixel), axis, dims), id, floatBitsToUint(w));
+            ldcWriteDepth(position, pixel, id, place, w);
         }
         return 1u;
     }

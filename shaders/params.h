@@ -53,9 +53,11 @@ struct LdcParams {
     uint long_capacity;       ///< entries of the queue of long lists
     uint axis;                ///< of ldc_sat_scan
     uint block;               ///< of ldc_ranges: pixels of a block along u, and along v << 16
-    uint level;               ///< of ldc_ranges_up
+    uint level;               ///< of ldc_ranges_up; of ldc_peel: passes before this one
+    uint viewport;            ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
+    uint side;                ///< of peeling: pixels along a side of the targets
 };
-SHARED_SIZE(LdcParams, 80);
+SHARED_SIZE(LdcParams, 88);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
 #define LDC_BAND 1u          // pixel centres, with the overlap band: `planar`
 #define LDC_CENTRE 2u        // pixel centres, each triangle in one LDI, as in the paper: `tolerance`
@@ -75,8 +77,10 @@ struct LdcCounters {
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
     uint wrapped;     ///< 1: more fragments than 32 bits count
     uvec3 lines;      ///< of ldc_sat_scan along x, y, z
+    uint complexity;  ///< of peeling: the depth complexity, largest of all bodies
+    uint passes;      ///< of peeling: made for all bodies
 };
-SHARED_SIZE(LdcCounters, 60);
+SHARED_SIZE(LdcCounters, 68);
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
 #define LDC_GROUPS_BIG 0u
@@ -89,6 +93,35 @@ SHARED_SIZE(LdcCounters, 60);
 #define LDC_GROUPS_CELLS_BY_64 7u
 #define LDC_GROUPS_LINES 8u       // three, of 64
 #define LDC_GROUPS 11u
+
+/// Parameters of ldc_max, one step of a reduction.
+struct MaxParams {
+    uint from;   ///< of the values
+    uint count;
+    uint to;     ///< where the maxima of LDC_MAX_BLOCK values each go
+};
+SHARED_SIZE(MaxParams, 12);
+#define LDC_MAX_BLOCK 1024u
+
+/// Parameters of ldc_peel_plan.
+struct PeelPlanParams {
+    uint value;     ///< place of the depth complexity
+    uint body;
+    uint passes;    ///< recorded
+    uint vertices;  ///< of a draw
+    uint draws;     ///< of a pass: 1, or one for each LDI
+    uint texels;    ///< of the three LDIs' targets
+};
+SHARED_SIZE(PeelPlanParams, 24);
+
+/// VkDrawIndirectCommand.
+struct DrawArguments {
+    uint vertices;
+    uint instances;
+    uint first_vertex;
+    uint first_instance;
+};
+SHARED_SIZE(DrawArguments, 16);
 
 /// One triangle's crossing of one voxel or pixel, before it is sorted into its list.
 struct LdcFragment {

@@ -47,7 +47,6 @@ void TracingArguments::check() const {
         fail("{} {} is not built into this version: use {}", option, value, instead);
     };
     if (tracer == "khr") later("--tracer", tracer, "--tracer ldc");
-    if (builder != "auto" && builder != "compute") later("--builder", builder, "--builder compute");
     if (ldc && (*ldc < 16 || *ldc > 2048))
         fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
     if (!(tolerance > 0) || !std::isfinite(tolerance))

@@ -73,13 +73,14 @@ void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64
 }
 
 Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format,
-                 VkImageUsageFlags usage, VkImageAspectFlags aspect)
-    : device_(&device), width_(width), height_(height) {
+                 VkImageUsageFlags usage, VkImageAspectFlags aspect, uint32_t layers)
+    : device_(&device), width_(width), height_(height), layers_(layers), format_(format), aspect_(aspect) {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = format;
     info.extent = {width, height, 1};
-    info.mipLevels = info.arrayLayers = 1;
+    info.mipLevels = 1;
+    info.arrayLayers = layers;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = usage;
     check_vulkan(device.vk.vkCreateImage(device.handle, &info, nullptr, &handle_), "creating the image " + name);
@@ -89,20 +90,30 @@ Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32
         memory_ = device.allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, name);
         allocated_ = needs.size;
         check_vulkan(device.vk.vkBindImageMemory(device.handle, handle_, memory_, 0), "binding the image " + name);
-        VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-        view.image = handle_;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format;
-        view.subresourceRange = {aspect, 0, 1, 0, 1};
-        check_vulkan(device.vk.vkCreateImageView(device.handle, &view, nullptr, &view_), "viewing the image " + name);
+        view_ = create_view(layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, layers);
+        for (uint32_t i = 0; layers > 1 && i < layers; i++)
+            layer_views_.push_back(create_view(VK_IMAGE_VIEW_TYPE_2D, i, 1));
     } catch (...) {
         reset();
         throw;
     }
 }
 
+VkImageView Image2D::create_view(VkImageViewType type, uint32_t first, uint32_t count) {
+    VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+    info.image = handle_;
+    info.viewType = type;
+    info.format = format_;
+    info.subresourceRange = {aspect_, 0, 1, first, count};
+    VkImageView view = VK_NULL_HANDLE;
+    check_vulkan(device_->vk.vkCreateImageView(device_->handle, &info, nullptr, &view), "viewing an image");
+    return view;
+}
+
 void Image2D::reset() {
     if (!device_) return;
+    for (VkImageView view : layer_views_) device_->vk.vkDestroyImageView(device_->handle, view, nullptr);
+    layer_views_.clear();
     if (view_) device_->vk.vkDestroyImageView(device_->handle, view_, nullptr);
     if (handle_) device_->vk.vkDestroyImage(device_->handle, handle_, nullptr);
     if (memory_) device_->release(memory_, allocated_);
@@ -110,6 +121,8 @@ void Image2D::reset() {
     handle_ = VK_NULL_HANDLE;
     memory_ = VK_NULL_HANDLE;
     device_ = nullptr;
+    allocated_ = 0;
+    layout = VK_IMAGE_LAYOUT_UNDEFINED;
 }
 
 Image2D& Image2D::operator=(Image2D&& other) noexcept {
@@ -119,9 +132,14 @@ Image2D& Image2D::operator=(Image2D&& other) noexcept {
     handle_ = std::exchange(other.handle_, VkImage(VK_NULL_HANDLE));
     view_ = std::exchange(other.view_, VkImageView(VK_NULL_HANDLE));
     memory_ = std::exchange(other.memory_, VkDeviceMemory(VK_NULL_HANDLE));
-    allocated_ = other.allocated_;
+    layer_views_ = std::exchange(other.layer_views_, {});
+    allocated_ = std::exchange(other.allocated_, 0);
+    layout = std::exchange(other.layout, VK_IMAGE_LAYOUT_UNDEFINED);
     width_ = other.width_;
     height_ = other.height_;
+    layers_ = other.layers_;
+    format_ = other.format_;
+    aspect_ = other.aspect_;
     return *this;
 }
 

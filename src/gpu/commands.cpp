@@ -12,6 +12,8 @@ namespace {
 
 constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
 constexpr uint32_t kTimersPerPool = 512;
+constexpr VkPipelineStageFlags2 kWork = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+                                        VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
 
 }  // namespace
@@ -48,34 +50,53 @@ void Commands::begin() {
     barrier_if(true);  // earlier submissions' writes
 }
 
-void Commands::touch(VkBuffer buffer, bool reads, bool writes, bool& hazard) {
-    const auto found = accesses_.find(buffer);
+void Commands::touch(uint64_t handle, bool reads, bool writes, bool& hazard) {
+    const auto found = accesses_.find(handle);
     if (found == accesses_.end()) return;
     hazard |= (found->second.written && (reads || writes)) || (found->second.read && writes);
 }
 
+void Commands::touch(const Image2D& image, bool writes, bool fresh, VkImageLayout layout, bool& hazard) {
+    touch(uint64_t(image.handle()), !writes, writes, hazard);
+    if (image.layout == layout) return;
+    hazard = true;
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = barrier.dstStageMask = kWork;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = fresh ? VK_IMAGE_LAYOUT_UNDEFINED : image.layout;
+    barrier.newLayout = layout;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image.handle();
+    barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.layers()};
+    transitions_.push_back(barrier);
+    image.layout = layout;
+}
+
 void Commands::barrier_if(bool hazard) {
     if (!hazard) return;
-    const VkPipelineStageFlags2 work = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
-                                       VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = work;
+    barrier.srcStageMask = kWork;
     barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.dstStageMask = work;
+    barrier.dstStageMask = kWork;
     barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     info.memoryBarrierCount = 1;
     info.pMemoryBarriers = &barrier;
+    info.imageMemoryBarrierCount = uint32_t(transitions_.size());
+    info.pImageMemoryBarriers = transitions_.data();
     device_.vk.vkCmdPipelineBarrier2(commands_, &info);
+    transitions_.clear();
     accesses_.clear();
 }
 
 VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
     for (;; set_pool_++) {
         if (set_pool_ == set_pools_.size()) {
-            const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet};
+            const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet},
+                                                  {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kSetsPerPool * 2}};
             VkDescriptorPoolCreateInfo info{
-                VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 1, &size};
+                VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 2, sizes};
             VkDescriptorPool pool = VK_NULL_HANDLE;
             check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool),
                          "creating a descriptor pool");
@@ -96,29 +117,42 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bi
     if (bindings.size() != wanted.size())
         fail("the pass {} has {} bindings but was given {} (a programming error)", pass.name(), wanted.size(),
              bindings.size());
+    // All is checked before anything is recorded: a refused pass leaves the recording as it was.
+    std::vector<const Binding*> matched;
+    for (const ShaderBinding& want : wanted) {
+        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == want.name; });
+        if (given == bindings.end())
+            fail("the pass {} was not given '{}' (a programming error)", pass.name(), want.name);
+        if (want.image ? !given->image || !*given->image : !given->buffer || !*given->buffer)
+            fail("the pass {} was given no {} for '{}' (a programming error)", pass.name(),
+                 want.image ? "image" : "buffer", want.name);
+        matched.push_back(&*given);
+    }
     const VkDescriptorSet set = allocate_set(pass.set_layout());
     std::vector<VkDescriptorBufferInfo> infos(wanted.size());
+    std::vector<VkDescriptorImageInfo> image_infos(wanted.size());
     std::vector<VkWriteDescriptorSet> writes;
     for (size_t i = 0; i < wanted.size(); i++) {
-        const auto given =
-            std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted[i].name; });
-        if (given == bindings.end())
-            fail("the pass {} was not given '{}' (a programming error)", pass.name(), wanted[i].name);
-        if (!given->buffer)
-            fail("the pass {} was given no buffer for '{}' (a programming error)", pass.name(), wanted[i].name);
-        infos[i] = {given->buffer.handle(), 0, VK_WHOLE_SIZE};
+        const Binding& given = *matched[i];
+        if (given.image)
+            image_infos[i] = {VK_NULL_HANDLE, given.image->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        else
+            infos[i] = {given.buffer->handle(), 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    nullptr,
                                    set,
                                    wanted[i].binding,
                                    0,
                                    1,
-                                   VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                   nullptr,
+                                   descriptor_type(wanted[i]),
+                                   &image_infos[i],
                                    &infos[i],
                                    nullptr};
         writes.push_back(write);
-        touch(given->buffer.handle(), wanted[i].reads, wanted[i].writes, hazard);
+        if (given.image)
+            touch(*given.image, false, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, hazard);
+        else
+            touch(*given.buffer, wanted[i].reads, wanted[i].writes, hazard);
     }
     device_.vk.vkUpdateDescriptorSets(device_.handle, uint32_t(writes.size()), writes.data(), 0, nullptr);
     return set;
@@ -128,9 +162,9 @@ void Commands::mark(std::span<const Binding> bindings, const PassBase& pass) {
     for (const auto& wanted : pass.interface().bindings) {
         const auto given =
             std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
-        auto& access = accesses_[given->buffer.handle()];
-        access.read |= wanted.reads;
-        access.written |= wanted.writes;
+        Access& done = given->image ? access(*given->image) : access(*given->buffer);
+        done.read |= wanted.reads;
+        done.written |= wanted.writes;
     }
 }
 
@@ -146,10 +180,10 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     begin();
     bool hazard = false;
     const VkDescriptorSet set = bind(pass, bindings, hazard);
-    if (arguments) touch(arguments->handle(), true, false, hazard);
+    if (arguments) touch(*arguments, true, false, hazard);
     barrier_if(hazard);
     mark(bindings, pass);
-    if (arguments) accesses_[arguments->handle()].read = true;
+    if (arguments) access(*arguments).read = true;
 
     label(pass.name());
     begin_timer(pass.name());
@@ -166,92 +200,104 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
 }
 
 void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                           std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth,
-                           const Buffer& target) {
+                           std::span<const DrawRange> ranges, const IndirectDraws* indirect, const DrawTargets& targets,
+                           const Buffer* copied) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
              pass.interface().push_constant_bytes, bytes);
+    assert(targets.colors.size() == pass.setup().colors.size());
     begin();
     bool hazard = false;
     const VkDescriptorSet set = bind(pass, bindings, hazard);
-    touch(target.handle(), false, true, hazard);
+    for (const Image2D* color : targets.colors)
+        touch(*color, true, true, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, hazard);
+    if (targets.depth) touch(*targets.depth, true, true, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, hazard);
+    if (indirect) touch(indirect->arguments, true, false, hazard);
+    if (copied) touch(*copied, false, true, hazard);
     barrier_if(hazard);
     mark(bindings, pass);
-    accesses_[target.handle()].written = true;
+    for (const Image2D* color : targets.colors) access(*color).written = true;
+    if (targets.depth) access(*targets.depth).written = true;
+    if (indirect) access(indirect->arguments).read = true;
+    if (copied) access(*copied).written = true;
 
-    auto transition = [&](VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) {
-        VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-        const VkPipelineStageFlags2 stages =
-            VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-        barrier.srcStageMask = barrier.dstStageMask = stages;
-        barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = image;
-        barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-        VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-        info.imageMemoryBarrierCount = 1;
-        info.pImageMemoryBarriers = &barrier;
-        device_.vk.vkCmdPipelineBarrier2(commands_, &info);
-    };
     label(pass.name());
     begin_timer(pass.name());
-    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    transition(depth.handle(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
-
-    VkRenderingAttachmentInfo color_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    color_info.imageView = color.view();
-    color_info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    color_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    color_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    color_info.clearValue.color.uint32[0] = color_info.clearValue.color.uint32[1] = ~0u;
-    VkRenderingAttachmentInfo depth_info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    depth_info.imageView = depth.view();
-    depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-    depth_info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    depth_info.clearValue.depthStencil.depth = 0;
-    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    rendering.renderArea.extent = {color.width(), color.height()};
-    rendering.layerCount = 1;
-    rendering.colorAttachmentCount = 1;
-    rendering.pColorAttachments = &color_info;
-    rendering.pDepthAttachment = &depth_info;
-    const VkViewport viewport{0, 0, float(color.width()), float(color.height()), 0, 1};
-    const VkRect2D scissor{{0, 0}, {color.width(), color.height()}};
-    device_.vk.vkCmdBeginRendering(commands_, &rendering);
-    device_.vk.vkCmdSetViewport(commands_, 0, 1, &viewport);
-    device_.vk.vkCmdSetScissor(commands_, 0, 1, &scissor);
     device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.pipeline());
     device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0,
                                        nullptr);
     device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
-    for (const DrawRange& range : ranges)
-        device_.vk.vkCmdDraw(commands_, 3 * range.triangles, range.instances, 3 * range.first_triangle,
-                             range.first_instance);
-    device_.vk.vkCmdEndRendering(commands_);
-
-    transition(color.handle(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {color.width(), color.height(), 1};
-    device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
-                                      1, &region);
+    const uint32_t draws = indirect ? indirect->draws : uint32_t(ranges.size());
+    assert(!targets.apart || draws == targets.layers);
+    // Nothing to draw still clears the targets.
+    for (uint32_t i = 0; i < std::max(draws, 1u); i++) {
+        if (i == 0 || targets.apart) begin_rendering(pass, targets, i);
+        if (indirect)
+            device_.vk.vkCmdDrawIndirect(commands_, indirect->arguments.handle(),
+                                         indirect->offset + i * sizeof(VkDrawIndirectCommand), 1, 0);
+        else if (i < draws)
+            device_.vk.vkCmdDraw(commands_, 3 * ranges[i].triangles, ranges[i].instances, 3 * ranges[i].first_triangle,
+                                 ranges[i].first_instance);
+        if (i + 1 >= draws || targets.apart) device_.vk.vkCmdEndRendering(commands_);
+    }
+    if (copied) {
+        const Image2D& color = *targets.colors[0];
+        bool wait = false;
+        touch(color, false, false, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, wait);
+        barrier_if(wait);
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {color.width(), color.height(), 1};
+        device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                          copied->handle(), 1, &region);
+        access(color).read = true;
+        access(*copied).written = true;
+    }
     end_timer();
     end_label();
+}
+
+void Commands::begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer) {
+    const auto attachment = [&](const Image2D& image, VkImageLayout layout) {
+        VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+        info.imageView = targets.apart ? image.layer_view(layer) : image.view();
+        info.imageLayout = layout;
+        info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+        return info;
+    };
+    std::vector<VkRenderingAttachmentInfo> colors;
+    for (const Image2D* image : targets.colors) {
+        colors.push_back(attachment(*image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
+        if (image->format() == VK_FORMAT_R32G32_UINT)
+            colors.back().clearValue.color.uint32[0] = colors.back().clearValue.color.uint32[1] = ~0u;
+    }
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea.extent = {targets.width, targets.height};
+    rendering.layerCount = targets.apart ? 1 : targets.layers;
+    rendering.colorAttachmentCount = uint32_t(colors.size());
+    rendering.pColorAttachments = colors.data();
+    VkRenderingAttachmentInfo depth{};
+    if (targets.depth) {
+        depth = attachment(*targets.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+        depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+        depth.clearValue.depthStencil.depth = pass.setup().depth == VK_COMPARE_OP_GREATER ? 0.0f : 1.0f;
+        rendering.pDepthAttachment = &depth;
+    }
+    const uint32_t side = targets.viewport;
+    const VkViewport viewport{0, 0, float(side ? side : targets.width), float(side ? side : targets.height), 0, 1};
+    const VkRect2D scissor{{0, 0}, {targets.width, targets.height}};
+    device_.vk.vkCmdBeginRendering(commands_, &rendering);
+    device_.vk.vkCmdSetViewport(commands_, 0, 1, &viewport);
+    device_.vk.vkCmdSetScissor(commands_, 0, 1, &scissor);
 }
 
 void Commands::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint64_t bytes) {
     begin();
     bool hazard = false;
-    touch(buffer.handle(), false, true, hazard);
+    touch(buffer, false, true, hazard);
     barrier_if(hazard);
-    accesses_[buffer.handle()].written = true;
+    access(buffer).written = true;
     begin_timer("fill " + buffer.name());
     device_.vk.vkCmdFillBuffer(commands_, buffer.handle(), offset, bytes == ~0ull ? VK_WHOLE_SIZE : bytes, value);
     end_timer();
@@ -260,11 +306,11 @@ void Commands::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint6
 void Commands::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset, uint64_t to_offset) {
     begin();
     bool hazard = false;
-    touch(from.handle(), true, false, hazard);
-    touch(to.handle(), false, true, hazard);
+    touch(from, true, false, hazard);
+    touch(to, false, true, hazard);
     barrier_if(hazard);
-    accesses_[from.handle()].read = true;
-    accesses_[to.handle()].written = true;
+    access(from).read = true;
+    access(to).written = true;
     const VkBufferCopy region{from_offset, to_offset, bytes};
     device_.vk.vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
 }

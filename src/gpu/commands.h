@@ -14,10 +14,14 @@
 
 namespace peelray {
 
-/// A buffer given to the binding of that name in a shader.
+/// A buffer or image given to the binding of that name in a shader.
 struct Binding {
     std::string_view name;
-    const Buffer& buffer;
+    const Buffer* buffer = nullptr;
+    const Image2D* image = nullptr;
+
+    Binding(std::string_view n, const Buffer& b) : name(n), buffer(&b) {}
+    Binding(std::string_view n, const Image2D& i) : name(n), image(&i) {}
 };
 
 /// How often a compute pass runs, in workgroups.
@@ -34,6 +38,23 @@ inline Groups groups_for(uint64_t items, uint32_t per_group) {
 /// first_instance.
 struct DrawRange {
     uint32_t first_triangle, triangles, first_instance, instances;
+};
+
+/// Draws whose numbers are read on the GPU: VkDrawIndirectCommand each, from byte `offset` on.
+struct IndirectDraws {
+    const Buffer& arguments;
+    uint64_t offset = 0;
+    uint32_t draws = 1;
+};
+
+/// What a rasterising pass draws into: cleared first, colours of integers to ~0u, others to 0, depth to the farthest.
+struct DrawTargets {
+    std::vector<const Image2D*> colors;  ///< in the formats of the pass
+    const Image2D* depth = nullptr;
+    uint32_t width = 0, height = 0;  ///< the part drawn into, from the first pixel on
+    uint32_t viewport = 0;           ///< pixels along a side of what clip space covers; 0: width and height
+    uint32_t layers = 1;             ///< gl_Layer says which
+    bool apart = false;              ///< draw k goes into layer k, seen alone
 };
 
 /// GPU time of one pass of a submission.
@@ -75,15 +96,21 @@ class Commands {
     /// Draws `ranges` into `color` (R32G32_UINT, cleared to ~0u) with `depth` (D32, cleared to 0), then copies the
     /// colour to `target` (width·height pairs of uint32).
     template <typename Params>
-    void draw(const RasterPass& pass, std::initializer_list<Binding> bindings, const Params& params,
-              std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth, const Buffer& target) {
-        record_draw(pass, {bindings.begin(), bindings.size()}, &params, sizeof params, ranges, color, depth, target);
-    }
-
-    template <typename Params>
     void draw(const RasterPass& pass, std::span<const Binding> bindings, const Params& params,
               std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth, const Buffer& target) {
-        record_draw(pass, bindings, &params, sizeof params, ranges, color, depth, target);
+        record_draw(pass, bindings, &params, sizeof params, ranges, nullptr,
+                    {{&color}, &depth, color.width(), color.height()}, &target);
+    }
+    /// Draws `ranges` into any targets.
+    template <typename Params>
+    void draw(const RasterPass& pass, std::span<const Binding> bindings, const Params& params,
+              std::span<const DrawRange> ranges, const DrawTargets& targets) {
+        record_draw(pass, bindings, &params, sizeof params, ranges, nullptr, targets, nullptr);
+    }
+    template <typename Params>
+    void draw_indirect(const RasterPass& pass, std::span<const Binding> bindings, const Params& params,
+                       const IndirectDraws& draws, const DrawTargets& targets) {
+        record_draw(pass, bindings, &params, sizeof params, {}, &draws, targets, nullptr);
     }
 
     /// Fills `bytes` from `offset` (multiples of 4; ~0ull: to the end) with `value`.
@@ -122,15 +149,24 @@ class Commands {
         bool written = false, read = false;
     };
     void begin();
-    void touch(VkBuffer buffer, bool reads, bool writes, bool& hazard);
+    /// Buffers and images alike are known by their handles.
+    void touch(uint64_t handle, bool reads, bool writes, bool& hazard);
+    void touch(const Buffer& buffer, bool reads, bool writes, bool& hazard) {
+        touch(uint64_t(buffer.handle()), reads, writes, hazard);
+    }
+    /// `fresh`: what the image holds may be lost.
+    void touch(const Image2D& image, bool writes, bool fresh, VkImageLayout layout, bool& hazard);
+    Access& access(const Buffer& buffer) { return accesses_[uint64_t(buffer.handle())]; }
+    Access& access(const Image2D& image) { return accesses_[uint64_t(image.handle())]; }
     void barrier_if(bool hazard);
     VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
     void mark(std::span<const Binding> bindings, const PassBase& pass);
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
                 const Buffer* arguments, uint64_t offset);
     void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                     std::span<const DrawRange> ranges, const Image2D& color, const Image2D& depth,
-                     const Buffer& target);
+                     std::span<const DrawRange> ranges, const IndirectDraws* indirect, const DrawTargets& targets,
+                     const Buffer* copied);
+    void begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer);
     void begin_timer(const std::string& name);
     void end_timer();
     void label(const std::string& name);
@@ -153,7 +189,8 @@ class Commands {
     std::vector<PassTime> times_, host_times_;
     double elapsed_ms_ = 0;
     std::string group_;
-    std::unordered_map<VkBuffer, Access> accesses_;
+    std::unordered_map<uint64_t, Access> accesses_;
+    std::vector<VkImageMemoryBarrier2> transitions_;  ///< of the next barrier
     Buffer staging_up_, staging_down_;
 };
 

@@ -1,6 +1,8 @@
 #define VOLK_IMPLEMENTATION
 #include "gpu/device.h"
 
+#include <algorithm>
+#include <cstring>
 #include <map>
 
 #include "base/error.h"
@@ -14,8 +16,58 @@ namespace peelray {
 struct Device::State {
     std::unique_ptr<PipelineCache> cache;
     std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
-    std::map<std::pair<std::string, std::string>, std::unique_ptr<RasterPass>> raster_passes;
+    std::map<std::pair<std::string, RasterSetup>, std::unique_ptr<RasterPass>> raster_passes;
 };
+
+namespace {
+
+bool extension_available(VkPhysicalDevice device, const char* name) {
+    uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](auto& e) { return !std::strcmp(e.extensionName, name); });
+}
+
+/// Triangles are snapped to 1/256 pixel or so first: growing by less could lose a pixel.
+constexpr float kLeastOverestimation = 1.0f / 64;
+
+/// Reads what the device offers and sets in `on` what of it is used.
+DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures& on) {
+    VkPhysicalDeviceConservativeRasterizationPropertiesEXT conservative{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CONSERVATIVE_RASTERIZATION_PROPERTIES_EXT};
+    VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups};
+    const bool has_conservative = extension_available(device, VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);
+    if (has_conservative) subgroups.pNext = &conservative;
+    vkGetPhysicalDeviceProperties2(device, &properties);
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(device, &offered);
+
+    DeviceFeatures features;
+    on.geometryShader = offered.geometryShader;
+    on.tessellationShader = offered.tessellationShader;
+    on.fragmentStoresAndAtomics = offered.fragmentStoresAndAtomics;
+    on.drawIndirectFirstInstance = offered.drawIndirectFirstInstance;
+    features.geometry_shader = on.geometryShader == VK_TRUE;
+    features.tessellation_shader = on.tessellationShader == VK_TRUE;
+    features.fragment_stores = on.fragmentStoresAndAtomics == VK_TRUE;
+    features.first_instance = on.drawIndirectFirstInstance == VK_TRUE;
+    const VkSubgroupFeatureFlags wanted =
+        VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
+    features.fragment_subgroups = (subgroups.supportedStages & VK_SHADER_STAGE_FRAGMENT_BIT) &&
+                                  (subgroups.supportedOperations & wanted) == wanted;
+    if (has_conservative && conservative.degenerateTrianglesRasterized) {
+        const float most = conservative.maxExtraPrimitiveOverestimationSize,
+                    step = conservative.extraPrimitiveOverestimationSizeGranularity;
+        const float extra = std::max(kLeastOverestimation, step);
+        if (extra <= most) features.overestimation = extra;
+    }
+    return features;
+}
+
+}  // namespace
 
 void check_vulkan(VkResult result, std::string_view what) {
     if (result == VK_SUCCESS) return;
@@ -80,6 +132,12 @@ void Device::create_logical(bool validate) {
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &v12};
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue_info;
+    VkPhysicalDeviceFeatures optional{};
+    features = optional_features(physical, optional);
+    info.pEnabledFeatures = &optional;
+    const char* extension = VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME;
+    info.enabledExtensionCount = features.overestimation > 0 ? 1 : 0;
+    info.ppEnabledExtensionNames = &extension;
     check_vulkan(vkCreateDevice(physical, &info, nullptr, &handle), fmt::format("opening the device '{}'", info_.name));
     volkLoadDeviceTable(&vk, handle);
     vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);
@@ -102,10 +160,13 @@ const Pass& Device::pass(std::string_view shader, const std::vector<uint32_t>& c
     return *entry;
 }
 
-const RasterPass& Device::raster_pass(std::string_view shader, std::string_view fragment) {
-    if (fragment.empty()) fragment = shader;
-    auto& entry = state_->raster_passes[{std::string(shader), std::string(fragment)}];
-    if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader, fragment);
+const RasterPass& Device::raster_pass(std::string_view shader) {
+    return raster_pass(shader, RasterSetup());
+}
+
+const RasterPass& Device::raster_pass(std::string_view shader, const RasterSetup& setup) {
+    auto& entry = state_->raster_passes[{std::string(shader), setup}];
+    if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader, setup);
     return *entry;
 }
 

@@ -14,6 +14,7 @@ namespace peelray {
 class Pass;
 class PipelineCache;
 class RasterPass;
+struct RasterSetup;
 
 /// One physical device, as `peelray devices` lists it.
 struct DeviceInfo {
@@ -35,6 +36,17 @@ struct DeviceOptions {
 /// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
 std::vector<DeviceInfo> list_devices();
 
+/// What a device may offer beyond what all passes need; on where it is there.
+struct DeviceFeatures {
+    bool geometry_shader = false, tessellation_shader = false;
+    bool fragment_stores = false;     ///< fragment shaders write buffers, with atomics
+    bool fragment_subgroups = false;  ///< subgroup arithmetic in fragment shaders
+    bool first_instance = false;      ///< indirect draws count instances from any number
+    /// VK_EXT_conservative_rasterization that grows triangles by this many pixels more than it must, however thin they
+    /// are; 0: not offered.
+    float overestimation = 0;
+};
+
 /// A logical device with one queue that does graphics, compute and transfer.
 class Device {
   public:
@@ -53,9 +65,11 @@ class Device {
     /// specialisation constants 0, 1, …; each combination is a pass of its own.
     const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
 
-    /// The rasterising pass of NAME.vert and NAME.frag: one R32G32_UINT target and a D32 depth buffer (greater is
-    /// nearer). `fragment`: the name of another fragment shader; empty: its own.
-    const RasterPass& raster_pass(std::string_view shader, std::string_view fragment = {});
+    /// The rasterising pass of NAME.vert and NAME.frag with one R32G32_UINT target and a D32 depth buffer (greater is
+    /// nearer).
+    const RasterPass& raster_pass(std::string_view shader);
+    /// The rasterising pass whose fragment shader is NAME.frag, made once and kept for each setup.
+    const RasterPass& raster_pass(std::string_view shader, const RasterSetup& setup);
 
     /// What the validation layers said so far, one message each; empty without `validate`.
     const std::vector<std::string>& validation_messages() const { return validation_messages_; }
@@ -77,7 +91,8 @@ class Device {
     /// Software devices run passes lazily, so that their timestamps tell nothing: each pass is submitted alone there
     /// and timed by the host's clock. Not under validation, which is to see the passes and their barriers together.
     bool immediate = false;
-    bool labels = false;  ///< VK_EXT_debug_utils is on: passes name themselves
+    DeviceFeatures features;  ///< tests turn some off
+    bool labels = false;      ///< VK_EXT_debug_utils is on: passes name themselves
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
                             std::string_view what);
     void release(VkDeviceMemory memory, uint64_t size);

@@ -1,7 +1,6 @@
 #include "gpu/pass.h"
 
 #include <algorithm>
-#include <cassert>
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "base/error.h"
@@ -20,10 +19,27 @@ std::span<const uint32_t> find_shader(std::string_view name) {
     fail("no shader '{}' is built in (a programming error)", name);
 }
 
+std::vector<VkSpecializationMapEntry> constant_entries(const std::vector<uint32_t>& constants) {
+    std::vector<VkSpecializationMapEntry> entries;
+    for (uint32_t i = 0; i < constants.size(); i++) entries.push_back({i, i * 4, 4});
+    return entries;
+}
+
 }  // namespace
 
 void register_shaders(std::span<const EmbeddedShader> shaders) {
     registered().insert(registered().end(), shaders.begin(), shaders.end());
+}
+
+void ShaderInterface::add(const ShaderBinding& found) {
+    const auto same =
+        std::find_if(bindings.begin(), bindings.end(), [&](auto& other) { return other.binding == found.binding; });
+    if (same == bindings.end()) return bindings.push_back(found);
+    if (same->name != found.name || same->image != found.image)
+        fail("two stages disagree on binding {}: '{}' and '{}' (a programming error)", found.binding, same->name,
+             found.name);
+    same->reads |= found.reads;
+    same->writes |= found.writes;
 }
 
 void ShaderInterface::reflect(std::span<const uint32_t> code) {
@@ -34,18 +50,11 @@ void ShaderInterface::reflect(std::span<const uint32_t> code) {
         const std::string suffix = "_block";
         if (name.size() > suffix.size() && name.ends_with(suffix)) name.resize(name.size() - suffix.size());
         const auto flags = compiler.get_buffer_block_flags(resource.id);
-        const ShaderBinding found{name, compiler.get_decoration(resource.id, spv::DecorationBinding),
-                                  !flags.get(spv::DecorationNonReadable), !flags.get(spv::DecorationNonWritable)};
-        auto same =
-            std::find_if(bindings.begin(), bindings.end(), [&](auto& other) { return other.binding == found.binding; });
-        if (same == bindings.end()) {
-            bindings.push_back(found);
-        } else {
-            assert(same->name == found.name);
-            same->reads |= found.reads;
-            same->writes |= found.writes;
-        }
+        add({name, compiler.get_decoration(resource.id, spv::DecorationBinding), !flags.get(spv::DecorationNonReadable),
+             !flags.get(spv::DecorationNonWritable)});
     }
+    for (const auto& image : resources.separate_images)
+        add({image.name, compiler.get_decoration(image.id, spv::DecorationBinding), true, false, true});
     for (const auto& resource : resources.push_constant_buffers) {
         const auto size = compiler.get_declared_struct_size(compiler.get_type(resource.base_type_id));
         push_constant_bytes = std::max(push_constant_bytes, uint32_t(size));
@@ -77,7 +86,7 @@ VkShaderModule PassBase::create_module(std::span<const uint32_t> code) {
 void PassBase::create_layout() {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const auto& binding : interface_.bindings)
-        bindings.push_back({binding.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages_, nullptr});
+        bindings.push_back({binding.binding, descriptor_type(binding), 1, stages_, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = uint32_t(bindings.size());
     set_info.pBindings = bindings.data();
@@ -99,8 +108,7 @@ Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const
     VkShaderModule module = create_module(find_shader(shader));
     create_layout();
 
-    std::vector<VkSpecializationMapEntry> entries;
-    for (uint32_t i = 0; i < constants.size(); i++) entries.push_back({i, i * 4, 4});
+    const std::vector<VkSpecializationMapEntry> entries = constant_entries(constants);
     const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), constants.size() * 4,
                                               constants.data()};
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
@@ -113,50 +121,77 @@ Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const
     check_vulkan(result, "compiling the shader " + name_);
 }
 
-RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, std::string_view fragment_shader)
-    : PassBase(device, std::string(shader)) {
-    stages_ = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    VkShaderModule vertex = create_module(find_shader(name_ + ".vert"));
-    VkShaderModule fragment = create_module(find_shader(std::string(fragment_shader) + ".frag"));
-    create_layout();
+RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, const RasterSetup& setup)
+    : PassBase(device, std::string(shader)), setup_(setup) {
+    const std::string front = setup.front.empty() ? name_ : setup.front;
+    struct Stage {
+        VkShaderStageFlagBits bit;
+        std::string file;
+    };
+    std::vector<Stage> files = {{VK_SHADER_STAGE_VERTEX_BIT, front + ".vert"}};
+    if (setup.patch_points) {
+        files.push_back({VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, front + ".tesc"});
+        files.push_back({VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, front + ".tese"});
+    }
+    if (setup.geometry) files.push_back({VK_SHADER_STAGE_GEOMETRY_BIT, front + ".geom"});
+    files.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, name_ + ".frag"});
 
-    const VkPipelineShaderStageCreateInfo stage_infos[] = {
-        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_VERTEX_BIT, vertex, "main",
-         nullptr},
-        {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_FRAGMENT_BIT, fragment,
-         "main", nullptr}};
+    const std::vector<VkSpecializationMapEntry> entries = constant_entries(setup.constants);
+    const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), setup.constants.size() * 4,
+                                              setup.constants.data()};
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    for (const Stage& stage : files) {
+        stages_ |= stage.bit;
+        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit,
+                          create_module(find_shader(stage.file)), "main", &specialization});
+    }
+    create_layout();
+    create_pipeline(cache, stages);
+}
+
+void RasterPass::create_pipeline(VkPipelineCache cache, std::span<const VkPipelineShaderStageCreateInfo> stages) {
     VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    assembly.topology = setup_.patch_points ? VK_PRIMITIVE_TOPOLOGY_PATCH_LIST : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPipelineTessellationStateCreateInfo tessellation{VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO};
+    tessellation.patchControlPoints = setup_.patch_points;
     VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
     viewport.viewportCount = viewport.scissorCount = 1;
+    VkPipelineRasterizationConservativeStateCreateInfoEXT conservative{
+        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_CONSERVATIVE_STATE_CREATE_INFO_EXT};
+    conservative.conservativeRasterizationMode = VK_CONSERVATIVE_RASTERIZATION_MODE_OVERESTIMATE_EXT;
+    conservative.extraPrimitiveOverestimationSize = device_.features.overestimation;
     VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+    if (setup_.overestimate) raster.pNext = &conservative;
     raster.cullMode = VK_CULL_MODE_NONE;
     raster.lineWidth = 1;
     VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
     multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    const bool has_depth = setup_.depth != VK_COMPARE_OP_ALWAYS;
     VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
-    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-    depth.depthCompareOp = VK_COMPARE_OP_GREATER;  // reversed depth: precise far away
+    depth.depthTestEnable = depth.depthWriteEnable = has_depth;
+    depth.depthCompareOp = setup_.depth;
     VkPipelineColorBlendAttachmentState attachment{};
-    attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
+    attachment.colorWriteMask =
+        VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    const std::vector<VkPipelineColorBlendAttachmentState> attachments(setup_.colors.size(), attachment);
     VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-    blend.attachmentCount = 1;
-    blend.pAttachments = &attachment;
+    blend.attachmentCount = uint32_t(attachments.size());
+    blend.pAttachments = attachments.data();
     const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, nullptr, 0, 2,
                                              states};
-    const VkFormat color = VK_FORMAT_R32G32_UINT;
     VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-    rendering.colorAttachmentCount = 1;
-    rendering.pColorAttachmentFormats = &color;
-    rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
+    rendering.colorAttachmentCount = uint32_t(setup_.colors.size());
+    rendering.pColorAttachmentFormats = setup_.colors.data();
+    rendering.depthAttachmentFormat = has_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
 
     VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
-    info.stageCount = 2;
-    info.pStages = stage_infos;
+    info.stageCount = uint32_t(stages.size());
+    info.pStages = stages.data();
     info.pVertexInputState = &input;
     info.pInputAssemblyState = &assembly;
+    info.pTessellationState = setup_.patch_points ? &tessellation : nullptr;
     info.pViewportState = &viewport;
     info.pRasterizationState = &raster;
     info.pMultisampleState = &multisample;
@@ -164,9 +199,8 @@ RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view s
     info.pColorBlendState = &blend;
     info.pDynamicState = &dynamic;
     info.layout = layout_;
-    const VkResult result = device.vk.vkCreateGraphicsPipelines(device.handle, cache, 1, &info, nullptr, &pipeline_);
-    device.vk.vkDestroyShaderModule(device.handle, vertex, nullptr);
-    device.vk.vkDestroyShaderModule(device.handle, fragment, nullptr);
+    const VkResult result = device_.vk.vkCreateGraphicsPipelines(device_.handle, cache, 1, &info, nullptr, &pipeline_);
+    for (const auto& stage : stages) device_.vk.vkDestroyShaderModule(device_.handle, stage.module, nullptr);
     check_vulkan(result, "compiling the shader " + name_);
 }
 

@@ -10,14 +10,15 @@
 
 namespace peelray {
 
-/// A storage buffer of a shader as reflection sees it.
+/// A storage buffer or image of a shader as reflection sees it.
 struct ShaderBinding {
-    std::string name;  ///< the block's name less its suffix "_block" (see shaders/common.glsl)
+    std::string name;  ///< the block's name less its suffix "_block" (see shaders/common.glsl), or the image's
     uint32_t binding;
     bool reads, writes;
+    bool image = false;  ///< read texel by texel, without a sampler
 };
 
-/// What a shader (or a vertex and fragment shader together) declares.
+/// What a shader (or the stages of a rasterising pass together) declares.
 struct ShaderInterface {
     std::vector<ShaderBinding> bindings;
     uint32_t push_constant_bytes = 0;
@@ -25,7 +26,14 @@ struct ShaderInterface {
 
     void reflect(std::span<const uint32_t> code);
     bool declares(std::string_view name) const;
+
+  private:
+    void add(const ShaderBinding& found);
 };
+
+inline VkDescriptorType descriptor_type(const ShaderBinding& binding) {
+    return binding.image ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
 
 /// The part that every kind of pass shares: layout and pipeline.
 class PassBase {
@@ -61,10 +69,29 @@ class Pass : public PassBase {
     Pass(Device& device, VkPipelineCache cache, std::string_view shader, const std::vector<uint32_t>& constants);
 };
 
+/// How a rasterising pass is put together.
+struct RasterSetup {
+    std::string front;          ///< name of the stages before the fragments' (.vert and so on); empty: the pass's own
+    bool geometry = false;      ///< with the geometry shader FRONT.geom
+    uint32_t patch_points = 0;  ///< corners of a patch, for FRONT.tesc and FRONT.tese; 0: triangles, no tessellation
+    std::vector<VkFormat> colors = {VK_FORMAT_R32G32_UINT};  ///< of the targets; may be empty
+    VkCompareOp depth = VK_COMPARE_OP_GREATER;               ///< of a D32 buffer; VK_COMPARE_OP_ALWAYS: there is none
+    bool overestimate = false;             ///< every pixel that a triangle touches (DeviceFeatures::overestimation)
+    std::vector<uint32_t> constants = {};  ///< specialisation constants 0, 1, … of all stages
+
+    auto operator<=>(const RasterSetup&) const = default;
+};
+
 /// A rasterising pass without vertex buffers (see Commands::draw): the vertex shader fetches what it needs.
 class RasterPass : public PassBase {
   public:
-    RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, std::string_view fragment);
+    RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, const RasterSetup& setup);
+    const RasterSetup& setup() const { return setup_; }
+
+  private:
+    void create_pipeline(VkPipelineCache cache, std::span<const VkPipelineShaderStageCreateInfo> stages);
+
+    RasterSetup setup_;
 };
 
 /// Adds shaders that are not the library's own (tests' probes); call before the first pass() that names one.

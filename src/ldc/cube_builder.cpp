@@ -4,7 +4,9 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "ldc/abuffer_rasterizer.h"
 #include "ldc/compute_rasterizer.h"
+#include "ldc/peel_rasterizer.h"
 #include "ldc/pixel_order.h"
 #include "ldc/voxel_order.h"
 
@@ -31,9 +33,19 @@ std::unique_ptr<BuildStage> make_order(const CubeLayout& layout) {
     return std::make_unique<VoxelOrder>();
 }
 
-std::unique_ptr<BuildStage> make_rasterizer(const CubeLayout& layout) {
-    if (layout.builder != BuilderKind::compute) fail("only the builder compute is built in");
-    return std::make_unique<ComputeRasterizer>();
+std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) {
+    uint32_t largest = 16;
+    for (const CubeBody& body : cubes.bodies()) largest = std::max(largest, round_resolution(body.resolution));
+    check_builder(device.features, device.limits(), device.info().name, cubes.layout(), cubes.sampling(), largest);
+    switch (cubes.layout().builder) {
+        case BuilderKind::compute:
+            return std::make_unique<ComputeRasterizer>();
+        case BuilderKind::abuffer:
+            return std::make_unique<AbufferRasterizer>(device, cubes);
+        case BuilderKind::peel:
+            return std::make_unique<PeelRasterizer>(device, cubes);
+    }
+    return nullptr;
 }
 
 uint32_t sampling_code(Sampling sampling) {
@@ -54,7 +66,7 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
                          const TableSize& before)
     : cubes_(cubes),
       state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}}),
-      rasterizer_(make_rasterizer(cubes.layout())),
+      rasterizer_(make_rasterizer(device, cubes)),
       order_(make_order(cubes.layout())) {
     const CubeBody &front = cubes.bodies()[first], &back = cubes.bodies()[first + bodies - 1];
     LdcParams& p = state_->params;

@@ -33,7 +33,9 @@ void record_view(Commands& commands, Device& device, const std::string& name, co
                                      {"instances", scene.instances.table()}};
     for (const Binding& other : others) bindings.push_back(other);
     const bool masked = scene.triangles.masks != nullptr;
-    const RasterPass& pass = device.raster_pass(name, masked ? name + "_masked" : name);
+    RasterSetup setup;
+    setup.front = name;
+    const RasterPass& pass = device.raster_pass(masked ? name + "_masked" : name, setup);
     for (const Binding& binding : base_color_bindings(scene.base_colors))
         if (pass.interface().declares(binding.name)) bindings.push_back(binding);
     commands.draw(pass, std::span<const Binding>(bindings), params, scene.draws, target.color, target.depth,

@@ -1,0 +1,85 @@
+#include "ldc/graphics_raster.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/error.h"
+
+namespace peelray {
+
+void check_builder(const DeviceFeatures& features, const VkPhysicalDeviceLimits& limits, const std::string& device,
+                   const CubeLayout& layout, Sampling sampling, uint32_t resolution) {
+    if (layout.builder == BuilderKind::compute) return;
+    const char* name = layout.builder == BuilderKind::peel ? "peel" : "abuffer";
+    if (layout.builder == BuilderKind::peel && sampling == Sampling::conservative)
+        fail(
+            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
+            "--builder abuffer or compute");
+    if (!features.fragment_stores)
+        fail(
+            "the device '{}' cannot write buffers in fragment shaders, which --builder {} needs: use --builder compute",
+            device, name);
+    if (layout.routing == Routing::geometry && !features.geometry_shader)
+        fail("the device '{}' has no geometry shader: use --routing draws, or --builder compute", device);
+    if (layout.builder == BuilderKind::peel && layout.routing == Routing::draws && !features.first_instance)
+        fail(
+            "the device '{}' lacks drawIndirectFirstInstance, which peeling with --routing draws needs: use --routing "
+            "geometry, or --builder abuffer or compute",
+            device);
+    const uint32_t side = viewport_side(resolution);
+    const uint32_t most = std::min({limits.maxFramebufferWidth, limits.maxFramebufferHeight,
+                                    limits.maxViewportDimensions[0], limits.maxViewportDimensions[1],
+                                    layout.builder == BuilderKind::peel ? limits.maxImageDimension2D : ~0u});
+    if (side > most)
+        fail(
+            "the device '{}' draws into at most {} pixels a side, too few for LDIs of {} pixels: use a smaller --ldc, "
+            "or --builder compute",
+            device, most, resolution);
+    if (layout.builder == BuilderKind::peel && std::min(limits.maxImageArrayLayers, limits.maxFramebufferLayers) < 3)
+        fail("the device '{}' has no targets of three layers: use --builder abuffer or compute", device);
+}
+
+RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Sampling sampling, bool layered) {
+    const bool geometry = layout.routing == Routing::geometry;
+    const bool overestimate = sampling == Sampling::conservative && device.features.overestimation > 0;
+    const bool dilated = sampling == Sampling::conservative && !overestimate;
+    RoutedSetup result;
+    result.setup.front = "ldc_route";
+    result.setup.geometry = geometry;
+    result.setup.overestimate = overestimate;
+    result.setup.constants = {geometry, dilated, layered};
+    result.vertices = dilated && !geometry ? 15 : 3;  // a triangle grown by a square has seven sides
+    result.instances = geometry ? 1 : 3;
+    return result;
+}
+
+RasterSetup with_alpha_test(const RasterSetup& setup, const Cubes& cubes, const TriangleBuffers& triangles) {
+    RasterSetup result = setup;
+    // Conservative samples keep what may be a hole: a hit decides at its own place.
+    result.constants.push_back(triangles.masks && cubes.sampling() != Sampling::conservative);
+    return result;
+}
+
+std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
+    std::vector<Binding> all;
+    for (const Binding& binding : bindings) all.push_back(binding);
+    for (const Binding& binding : alpha_bindings(triangles)) all.push_back(binding);
+    return all;
+}
+
+uint32_t viewport_side(uint32_t resolution) {
+    return std::bit_ceil(round_resolution(resolution));
+}
+
+void record_inspect(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
+    commands.run(state.device.pass("ldc_inspect"),
+                 {{"positions", triangles.positions},
+                  {"triangles", triangles.triangles},
+                  {"counters", state.counters},
+                  {"bodies", state.cubes.body_table}},
+                 state.params, groups_for(state.params.triangles, 64));
+    // The by-voxel order begins with a pass over the cells; the by-pixel order counts its workgroups itself.
+    if (!state.cubes.layout().by_pixel()) state.record_groups(commands);
+}
+
+}  // namespace peelray
