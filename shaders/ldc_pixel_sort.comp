@@ -2,6 +2,7 @@
 #version 460
 #include "ldc_common.glsl"
 layout(local_size_x = 128) in;
+layout(constant_id = 0) const bool STREAM = false;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)
 BUFFER(readonly, 1, LdcFragment, fragments)
@@ -13,6 +14,8 @@ BUFFER(readonly, 6, uvec3, triangles)
 BUFFER(readonly, 7, LdcBody, bodies)
 BUFFER(writeonly, 8, uvec2, samples)
 BUFFER(writeonly, 9, uint, sample_ids)
+BUFFER(readonly, 10, LdcCaptured, captured)
+BUFFER(writeonly, 11, uvec2, sample_attributes)
 #include "ldc_bodies.glsl"
 #include "ldc_pixel_place.glsl"
 
@@ -31,5 +34,5 @@ void main() {
         const float other_w = uintBitsToFloat(other.local);
         rank += other_w < w || (other_w == w && other.id < f.id) ? 1u : 0u;
     }
-    placePixelSample(start + rank, f);
+    placePixelSample(start + rank, i);
 }

@@ -2,6 +2,7 @@
 #version 460
 #include "ldc_common.glsl"
 layout(local_size_x = 256) in;
+layout(constant_id = 0) const bool STREAM = false;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)
 BUFFER(readonly, 1, LdcFragment, fragments)
@@ -14,6 +15,8 @@ BUFFER(readonly, 7, LdcBody, bodies)
 BUFFER(writeonly, 8, uvec2, samples)
 BUFFER(, 9, uint, sample_ids)
 BUFFER(, 10, uint, unsorted_ids)
+BUFFER(readonly, 11, LdcCaptured, captured)
+BUFFER(writeonly, 12, uvec2, sample_attributes)
 #include "bounds.glsl"
 #include "ldc_bodies.glsl"
 #include "ldc_pixel_place.glsl"
@@ -32,5 +35,5 @@ void main() {
     if (GROUP_INDEX >= min(counters[0].long_lists, params.long_capacity)) return;
     const uint pixel = long_lists[GROUP_INDEX], length = pixel_counts[pixel], start = sums[pixel].x;
     for (uint round = 0u; round < 8u; round++) radixRound(start, length, round, (round & 1u) == 0u);
-    for (uint j = gl_LocalInvocationIndex; j < length; j += 256u) placePixelSample(start + j, fragments[unsorted_ids[start + j]]);
+    for (uint j = gl_LocalInvocationIndex; j < length; j += 256u) placePixelSample(start + j, unsorted_ids[start + j]);
 }

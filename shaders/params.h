@@ -131,6 +131,14 @@ struct LdcFragment {
 };
 SHARED_SIZE(LdcFragment, 12);
 
+/// What a sample of a drawn stream carries beside its depth.
+struct LdcCaptured {
+    uint slope;   ///< as in a sample of the by-pixel order
+    uint normal;  ///< packSnorm4x8
+    uint color;   ///< packUnorm4x8, linear
+};
+SHARED_SIZE(LdcCaptured, 12);
+
 /// Parameters of the prefix sum passes scan_*.comp.
 struct ScanParams {
     uint capacity;  ///< elements, if `counter` is SCAN_NO_COUNTER

@@ -133,7 +133,7 @@ RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view s
         files.push_back({VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, front + ".tesc"});
         files.push_back({VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, front + ".tese"});
     }
-    if (setup.geometry) files.push_back({VK_SHADER_STAGE_GEOMETRY_BIT, front + ".geom"});
+    if (!setup.geometry.empty()) files.push_back({VK_SHADER_STAGE_GEOMETRY_BIT, setup.geometry + ".geom"});
     files.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, name_ + ".frag"});
 
     const std::vector<VkSpecializationMapEntry> entries = constant_entries(setup.constants);

@@ -72,7 +72,7 @@ class Pass : public PassBase {
 /// How a rasterising pass is put together.
 struct RasterSetup {
     std::string front;          ///< name of the stages before the fragments' (.vert and so on); empty: the pass's own
-    bool geometry = false;      ///< with the geometry shader FRONT.geom
+    std::string geometry = {};  ///< name of the geometry shader (.geom); empty: none
     uint32_t patch_points = 0;  ///< corners of a patch, for FRONT.tesc and FRONT.tese; 0: triangles, no tessellation
     std::vector<VkFormat> colors = {VK_FORMAT_R32G32_UINT};  ///< of the targets; may be empty
     VkCompareOp depth = VK_COMPARE_OP_GREATER;               ///< of a D32 buffer; VK_COMPARE_OP_ALWAYS: there is none

@@ -4,6 +4,7 @@
 
 #include "gpu/commands.h"
 #include "ldc/cubes.h"
+#include "ldc/drawn_stream.h"
 
 namespace peelray {
 
@@ -24,6 +25,8 @@ struct BuildState {
     Buffer groups;       ///< LDC_GROUPS workgroup counts
     Buffer fragments;    ///< LdcFragment each
     Buffer node_masks;   ///< two uint32 per 16³ cell: its occupied nodes; by pixel: not used
+    Buffer captured;     ///< LdcCaptured of each fragment; of drawn streams only
+    std::vector<DrawnStream> streams;
 
     /// Bytes that the device binds at once.
     uint64_t most() const { return device.limits().maxStorageBufferRange; }

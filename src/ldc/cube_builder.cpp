@@ -8,6 +8,7 @@
 #include "ldc/compute_rasterizer.h"
 #include "ldc/peel_rasterizer.h"
 #include "ldc/pixel_order.h"
+#include "ldc/stream_rasterizer.h"
 #include "ldc/voxel_order.h"
 
 namespace peelray {
@@ -34,6 +35,7 @@ std::unique_ptr<BuildStage> make_order(const CubeLayout& layout) {
 }
 
 std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) {
+    if (cubes.layout().streams) return std::make_unique<StreamRasterizer>(device, cubes);
     uint32_t largest = 16;
     for (const CubeBody& body : cubes.bodies()) largest = std::max(largest, round_resolution(body.resolution));
     check_builder(device.features, device.limits(), device.info().name, cubes.layout(), cubes.sampling(), largest);
@@ -65,7 +67,7 @@ uint32_t sampling_code(Sampling sampling) {
 CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
                          const TableSize& before)
     : cubes_(cubes),
-      state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}}),
+      state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}, {}, {}}),
       rasterizer_(make_rasterizer(device, cubes)),
       order_(make_order(cubes.layout())) {
     const CubeBody &front = cubes.bodies()[first], &back = cubes.bodies()[first + bodies - 1];
@@ -90,6 +92,10 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
 }
 
 CubeBuilder::~CubeBuilder() = default;
+
+void CubeBuilder::set_streams(std::vector<DrawnStream> streams) {
+    state_->streams = std::move(streams);
+}
 
 void CubeBuilder::allocate(Commands& commands) {
     ensure_size(state_->device, state_->fragments, "fragments",
@@ -141,7 +147,7 @@ void CubeBuilder::build(Commands& commands, const TriangleBuffers& triangles) {
 
 uint64_t CubeBuilder::scratch_bytes() const {
     return state_->counters.bytes() + state_->groups.bytes() + state_->fragments.bytes() + state_->node_masks.bytes() +
-           rasterizer_->bytes() + order_->bytes();
+           state_->captured.bytes() + rasterizer_->bytes() + order_->bytes();
 }
 
 }  // namespace peelray

@@ -5,6 +5,7 @@
 
 #include "gpu/commands.h"
 #include "ldc/cubes.h"
+#include "ldc/drawn_stream.h"
 
 namespace peelray {
 
@@ -25,6 +26,9 @@ class CubeBuilder {
     CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
                 const TableSize& before = {});
     ~CubeBuilder();
+
+    /// What record() draws, where the layout says `streams`. The fragments are guessed from the bodies' triangles.
+    void set_streams(std::vector<DrawnStream> streams);
 
     /// Records all passes of one build into the group "build". The bodies' bounds in `cubes` are those of their
     /// triangles now.

@@ -99,6 +99,9 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
              size.nodes, size.samples);
     grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
     grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
+    const uint64_t attributes = layout_.streams ? 8 : 0;
+    grow(device_, commands, sample_attributes, "the cubes' attributes", size.samples * attributes,
+         kept.samples * attributes);
     if (layout_.by_pixel()) {
         grow(device_, commands, pixel_offsets, "the cubes' pixels", size.cells * 4, kept.cells * 4);
         grow(device_, commands, pixel_ranges, "the cubes' ranges of depth", size.cells * 4, kept.cells * 4);
@@ -122,7 +125,7 @@ std::vector<LdcBody> Cubes::download_bodies(Commands& commands) const {
 uint64_t Cubes::held_bytes() const {
     uint64_t bytes = 0;
     for (const Buffer* buffer : {&body_table, &body_lower, &body_upper, &top_table, &node_table, &voxel_table, &samples,
-                                 &sample_ids, &pixel_offsets, &pixel_ranges})
+                                 &sample_ids, &sample_attributes, &pixel_offsets, &pixel_ranges})
         bytes += buffer->bytes();
     return bytes;
 }

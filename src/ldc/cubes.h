@@ -83,6 +83,7 @@ struct CubeLayout {
     Batch batch = Batch::none;  ///< by pixel
     BuilderKind builder = BuilderKind::compute;
     Routing routing = Routing::geometry;  ///< of abuffer and peel
+    bool streams = false;  ///< of what is drawn (drawn_stream.h), not of triangles: samples carry attributes
 
     bool by_pixel() const { return traversal != Traversal::voxel; }
     bool operator==(const CubeLayout&) const = default;
@@ -137,7 +138,8 @@ class Cubes {
     Buffer pixel_ranges;   ///< by pixel: vec2 per block, or per cell of the pyramid: least and greatest depth of a hit
     Buffer
         samples;  ///< uvec2 each: depth, coverage, slopes, axis, last-of-list (ldcPackSample); by pixel: depth, slopes
-    Buffer sample_ids;  ///< uint32 each: triangle · 4 + axis
+    Buffer sample_ids;         ///< uint32 each: triangle · 4 + axis
+    Buffer sample_attributes;  ///< of drawn streams: uvec2 each: normal, colour (LdcCaptured)
 
   private:
     Device& device_;

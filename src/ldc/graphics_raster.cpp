@@ -45,7 +45,7 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
     const bool dilated = sampling == Sampling::conservative && !overestimate;
     RoutedSetup result;
     result.setup.front = "ldc_route";
-    result.setup.geometry = geometry;
+    if (geometry) result.setup.geometry = "ldc_route";
     result.setup.overestimate = overestimate;
     result.setup.constants = {geometry, dilated, layered};
     result.vertices = dilated && !geometry ? 15 : 3;  // a triangle grown by a square has seven sides

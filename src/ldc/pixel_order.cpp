@@ -20,6 +20,7 @@ void PixelOrder::allocate(Commands& commands, BuildState& state) {
     state.cubes.reserve(commands, state.before + TableSize{cells, 0, 0, p.fragment_capacity}, state.before);
     Device& device = state.device;
     ensure_size(device, state.node_masks, "node masks", 8);
+    ensure_size(device, state.captured, "captured attributes", 16);
     ensure_size(device, pixel_counts_, "samples of pixels", cells * 4);
     ensure_size(device, sums_, "prefix sums", cells * 8);
     ensure_size(device, block_sums_, "prefix sums of blocks", (cells / SCAN_BLOCK + 2) * 8);
@@ -39,6 +40,7 @@ void PixelOrder::record(Commands& commands, const BuildState& state, const Trian
 
 void PixelOrder::record_lists(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     Device& device = state.device;
+    const uint32_t streams = state.cubes.layout().streams;
     const LdcParams& p = state.params;
     state.record_groups(commands);
     commands.run_indirect(device.pass("ldc_pixel_count"),
@@ -63,7 +65,7 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"sums", sums_},
                            {"unsorted_ids", unsorted_ids_}},
                           p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(device.pass("ldc_pixel_sort"),
+    commands.run_indirect(device.pass("ldc_pixel_sort", {streams}),
                           {{"counters", state.counters},
                            {"fragments", state.fragments},
                            {"pixel_counts", pixel_counts_},
@@ -73,9 +75,11 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"triangles", triangles.triangles},
                            {"bodies", state.cubes.body_table},
                            {"samples", state.cubes.samples},
-                           {"sample_ids", state.cubes.sample_ids}},
+                           {"sample_ids", state.cubes.sample_ids},
+                           {"captured", state.captured},
+                           {"sample_attributes", state.cubes.sample_attributes}},
                           p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(device.pass("ldc_pixel_sort_long"),
+    commands.run_indirect(device.pass("ldc_pixel_sort_long", {streams}),
                           {{"counters", state.counters},
                            {"fragments", state.fragments},
                            {"pixel_counts", pixel_counts_},
@@ -86,7 +90,9 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"bodies", state.cubes.body_table},
                            {"samples", state.cubes.samples},
                            {"sample_ids", state.cubes.sample_ids},
-                           {"unsorted_ids", unsorted_ids_}},
+                           {"unsorted_ids", unsorted_ids_},
+                           {"captured", state.captured},
+                           {"sample_attributes", state.cubes.sample_attributes}},
                           p, state.groups, LDC_GROUPS_LONG * 12);
 }
 

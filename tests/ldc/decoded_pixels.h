@@ -36,7 +36,8 @@ class DecodedPixels {
         float w;
         glm::vec2 slope;
     };
-    std::vector<Sample> samples;  ///< by axis, then row, then column, then as in the pixel's list
+    std::vector<Sample> samples;   ///< by axis, then row, then column, then as in the pixel's list
+    std::vector<uint32_t> places;  ///< of the samples in the table
     uint32_t occupied = 0, longest = 0;
 
     DecodedPixels(const LdcBody& body, const PixelTables& tables) : body_(body), tables_(tables) {
@@ -85,6 +86,7 @@ class DecodedPixels {
                 ASSERT_TRUE(before.w < s.w || (before.w == s.w && before.id < s.id)) << "not sorted by depth, then id";
             }
             samples.push_back(s);
+            places.push_back(j);
         }
     }
 
