@@ -138,8 +138,15 @@ uint ldcPixelOfBody(uvec2 pixel, uint axis, uvec3 dims) {
     const uint before = axis == 0u ? 0u : dims.y * dims.z + (axis == 1u ? 0u : dims.z * dims.x);
     return before + peelrayPixelIndex(pixel, uint(ldcToLdi(vec3(dims), axis).x));
 }
+/// What a half float holds of a number in [0, 1], rounded to nearest even. In integers: compilers take packing and unpacking
+/// one after the other for nothing.
+float ldcHalf(float x) {
+    if (x < 6.103515625e-5) return roundEven(x * 16777216.0) / 16777216.0;  // subnormal
+    const uint bits = floatBitsToUint(x);
+    return uintBitsToFloat((bits + 0xfffu + (bits >> 13u & 1u)) & ~0x1fffu);
+}
 /// A depth as a half float of [0, 1] holds it, over an LDI of so many voxels: the paper's 16-bit depth.
-float ldcRoundDepth(float w, float voxels) { return unpackHalf2x16(packHalf2x16(vec2(w / voxels, 0.0))).x * voxels; }
+float ldcRoundDepth(float w, float voxels) { return ldcHalf(w / voxels) * voxels; }
 uvec3 ldcCell64(uint index) { return uvec3(index & 3u, (index >> 2u) & 3u, index >> 4u); }
 
 // --- 4x4x4 occupancy masks: bit z*16 + y*4 + x of (low word, high word) ---

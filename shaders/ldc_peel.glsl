@@ -5,7 +5,7 @@
 const uint LDC_NOTHING = 0xffffffffu;  // as the target of ids is cleared
 
 /// Depth as the target stores it: voxels, or the share of the LDI's depth in 16 bits.
-float peelStored(float w, float voxels) { return params.by_pixel == 2u ? unpackHalf2x16(packHalf2x16(vec2(w / voxels, 0.0))).x : w; }
+float peelStored(float w, float voxels) { return params.by_pixel == 2u ? ldcHalf(w / voxels) : w; }
 /// In voxels.
 float peelDepth(float stored, float voxels) { return params.by_pixel == 2u ? stored * voxels : stored; }
 /// What the depth test and the rejection both compare: a power of two, so that different depths stay different.

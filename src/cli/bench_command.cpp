@@ -134,6 +134,7 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const s
     p.device = a.device;
     p.rebuild = true;
     p.tracing.block = a.block;
+    p.tracing.routing = a.routing;
     p.floor = file.has_value();
     if (file) p.material = scene.material;
     p.animation = file ? scene.animation : scene.stand_in_animation;
@@ -257,6 +258,7 @@ void PaperBench::write(bool complete) const {
         json["image"] = {a_.size.x, a_.size.y};
         json["frames"] = a_.repeat;
         json["block"] = {a_.block.x, a_.block.y};
+        json["routing"] = a_.routing;
         const PictureArguments defaults;
         json["bounces"] = defaults.bounces;
         json["spp"] = defaults.spp;

@@ -387,6 +387,8 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         ->type_name("N|NxM")
         ->default_str("8")
         ->group(group);
+    add_choice(app, "--routing", a.routing, {"geometry", "draws"}, "how peel and abuffer send triangles to the three images")
+        ->group(group);
     add_number<double>(app, "--tolerance", a.tolerance,
                        "distance of a hit of tolerance, world units; default: 0.001 if the object were one unit long")
         ->group(group);

@@ -101,6 +101,7 @@ struct BenchArguments {
     std::vector<std::string> scenes, builders, traversals, hits;
     std::vector<uint32_t> ldc = {512, 1024};
     glm::uvec2 block{8}, size{1280, 1024};
+    std::string routing = "geometry";
     std::optional<double> tolerance;  ///< none: in proportion to the scene
     uint32_t repeat = 20;
     std::optional<std::filesystem::path> models;  ///< none: the folder "models", if there is one

@@ -39,8 +39,12 @@ std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice&
     // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.
     const LdcBody* worst = nullptr;
     const auto voxels = [](const LdcBody& body) { return body.tolerance * body.grid.inv_voxel; };
+    // What is flat along an axis does not slope.
+    const auto flat = [](const LdcBody& body) {
+        return std::min({body.grid.dims.x, body.grid.dims.y, body.grid.dims.z}) <= 16;
+    };
     for (const LdcBody& body : bodies)
-        if (!worst || voxels(body) < voxels(*worst)) worst = &body;
+        if (!flat(body) && (!worst || voxels(body) < voxels(*worst)) worst = &body;
     if (!worst || !(voxels(*worst) < 0.5f)) return {};
     return fmt::format(
         "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; --tolerance {:.2g} "
@@ -72,6 +76,10 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
         {"triangles_without_area", cubes.counts.degenerate},
         {"triangles_not_finite", cubes.counts.invalid},
         {"count", cubes.bodies}};
+    if (choice.layout.builder != BuilderKind::compute)
+        json["routing"] = choice.layout.routing == Routing::geometry ? "geometry" : "draws";
+    if (choice.layout.builder == BuilderKind::peel)
+        json["peeling"] = {{"depth_complexity", cubes.counts.complexity}, {"passes", cubes.counts.passes}};
     for (size_t i = 0; i < std::min<size_t>(bodies.size(), 64); i++)
         json["cubes"].push_back(body_stats(bodies[i], shown[i], i < cubes.fixed));
     return json;

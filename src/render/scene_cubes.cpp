@@ -58,6 +58,8 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
     sum.voxels += b.voxels;
     sum.long_lists += b.long_lists;
     sum.longest = std::max(a.longest, b.longest);
+    sum.complexity = std::max(a.complexity, b.complexity);
+    sum.passes += b.passes;
     sum.degenerate += b.degenerate;
     sum.invalid += b.invalid;
     return sum;
