@@ -24,38 +24,38 @@ struct LdcBody {
     CubeGrid grid;        ///< written by ldc_grids
     uint first_triangle;  ///< of the triangle buffer
     uint triangles;
-    uint resolution;      ///< voxels along the longest side, a multiple of 16
-    uint first_cell;      ///< in the table of 16x16x16 cells, or its first pixel; written by ldc_grids
-    uvec3 first_line;     ///< of ldc_sat_scan along x, y, z, counted over the bodies of a build; written by ldc_grids
-    float tolerance;      ///< of `tolerance` hits, in the units of the body's space
+    uint resolution;   ///< voxels along the longest side, a multiple of 16
+    uint first_cell;   ///< in the table of 16x16x16 cells, or its first pixel; written by ldc_grids
+    uvec3 first_line;  ///< of ldc_sat_scan along x, y, z, counted over the bodies of a build; written by ldc_grids
+    float tolerance;   ///< of `tolerance` hits, in the units of the body's space
 };
 SHARED_SIZE(LdcBody, 64);
 
-/// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the bodies
-/// that were built before.
+/// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the
+/// bodies that were built before.
 struct LdcParams {
     uint first_body;
     uint bodies;
-    uint first_triangle;      ///< of the first body
-    uint triangles;           ///< of all bodies of the build
-    uint first_cell;          ///< entry of the table of 16x16x16 cells, or pixel
-    uint first_occupied;      ///< number of an occupied 16x16x16 cell
-    uint first_node;          ///< number of an occupied 4x4x4 node
+    uint first_triangle;  ///< of the first body
+    uint triangles;       ///< of all bodies of the build
+    uint first_cell;      ///< entry of the table of 16x16x16 cells, or pixel
+    uint first_occupied;  ///< number of an occupied 16x16x16 cell
+    uint first_node;      ///< number of an occupied 4x4x4 node
     uint first_sample;
-    uint sampling;            ///< LDC_CONSERVATIVE, LDC_BAND or LDC_CENTRE
-    uint by_pixel;            ///< 1: fragments for the by-pixel order; 2: with depths of 16 bits
-    uint cell_capacity;       ///< 16x16x16 cells, or pixels, that have room
-    uint occupied_capacity;   ///< of them occupied
-    uint node_capacity;       ///< occupied 4x4x4 nodes that have room
+    uint sampling;           ///< LDC_CONSERVATIVE, LDC_BAND or LDC_CENTRE
+    uint by_pixel;           ///< 1: fragments for the by-pixel order; 2: with depths of 16 bits
+    uint cell_capacity;      ///< 16x16x16 cells, or pixels, that have room
+    uint occupied_capacity;  ///< of them occupied
+    uint node_capacity;      ///< occupied 4x4x4 nodes that have room
     uint fragment_capacity;
-    uint big_capacity;        ///< entries of the queue of large triangles
-    uint tile_capacity;       ///< entries of the queue of their 16x16-pixel tiles
-    uint long_capacity;       ///< entries of the queue of long lists
-    uint axis;                ///< of ldc_sat_scan
-    uint block;               ///< of ldc_ranges: pixels of a block along u, and along v << 16
-    uint level;               ///< of ldc_ranges_up; of ldc_peel: passes before this one
-    uint viewport;            ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
-    uint side;                ///< of peeling: pixels along a side of the targets
+    uint big_capacity;   ///< entries of the queue of large triangles
+    uint tile_capacity;  ///< entries of the queue of their 16x16-pixel tiles
+    uint long_capacity;  ///< entries of the queue of long lists
+    uint axis;           ///< of ldc_sat_scan
+    uint block;          ///< of ldc_ranges: pixels of a block along u, and along v << 16
+    uint level;          ///< of ldc_ranges_up; of ldc_peel: passes before this one
+    uint viewport;       ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
+    uint side;           ///< of peeling: pixels along a side of the targets
 };
 SHARED_SIZE(LdcParams, 88);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
@@ -64,13 +64,13 @@ SHARED_SIZE(LdcParams, 88);
 
 /// Counted on the GPU while building; whatever exceeds a capacity makes the host grow it and build again.
 struct LdcCounters {
-    uint fragments;   ///< samples
+    uint fragments;  ///< samples
     uint big;
     uint tiles;
-    uint cells;       ///< 16x16x16 cells, or pixels
-    uint occupied;    ///< of them occupied
-    uint nodes;       ///< occupied 4x4x4 nodes
-    uint voxels;      ///< occupied voxels
+    uint cells;     ///< 16x16x16 cells, or pixels
+    uint occupied;  ///< of them occupied
+    uint nodes;     ///< occupied 4x4x4 nodes
+    uint voxels;    ///< occupied voxels
     uint long_lists;
     uint longest;     ///< samples of the longest list; by pixel: the depth complexity
     uint degenerate;  ///< triangles without area: dropped
@@ -89,23 +89,23 @@ SHARED_SIZE(LdcCounters, 68);
 #define LDC_GROUPS_NODES 3u
 #define LDC_GROUPS_FRAGMENTS 4u
 #define LDC_GROUPS_LONG 5u
-#define LDC_GROUPS_CELLS 6u       // 256 to a group
+#define LDC_GROUPS_CELLS 6u  // 256 to a group
 #define LDC_GROUPS_CELLS_BY_64 7u
-#define LDC_GROUPS_LINES 8u       // three, of 64
+#define LDC_GROUPS_LINES 8u  // three, of 64
 #define LDC_GROUPS 11u
 
 /// Parameters of ldc_max, one step of a reduction.
 struct MaxParams {
-    uint from;   ///< of the values
+    uint from;  ///< of the values
     uint count;
-    uint to;     ///< where the maxima of LDC_MAX_BLOCK values each go
+    uint to;  ///< where the maxima of LDC_MAX_BLOCK values each go
 };
 SHARED_SIZE(MaxParams, 12);
 #define LDC_MAX_BLOCK 1024u
 
 /// Parameters of ldc_peel_plan.
 struct PeelPlanParams {
-    uint value;     ///< place of the depth complexity
+    uint value;  ///< place of the depth complexity
     uint body;
     uint passes;    ///< recorded
     uint vertices;  ///< of a draw
@@ -125,9 +125,11 @@ SHARED_SIZE(DrawArguments, 16);
 
 /// One triangle's crossing of one voxel or pixel, before it is sorted into its list.
 struct LdcFragment {
-    uint cell;   ///< of the build's 16^3 cells; after ldc_count: index of the voxel's entry, counted from the build's first. Or pixel
+    uint cell;   ///< of the build's 16^3 cells; after ldc_count: index of the voxel's entry, counted from the build's
+                 ///< first. Or pixel
     uint id;     ///< triangle * 4 + axis
-    uint local;  ///< voxel inside the 16^3 cell (12 bits: node 6, voxel 6); after ldc_count: slot in its list. Or depth: bits of a float
+    uint local;  ///< voxel inside the 16^3 cell (12 bits: node 6, voxel 6); after ldc_count: slot in its list. Or
+                 ///< depth: bits of a float
 };
 SHARED_SIZE(LdcFragment, 12);
 
@@ -203,17 +205,17 @@ SHARED_SIZE(TreeKey, 8);
 
 /// A primitive whose vertices are computed anew for every moment.
 struct DeformPiece {
-    uint first_group;      ///< of 64 vertices
+    uint first_group;  ///< of 64 vertices
     uint vertices;
-    uint first_rest;       ///< of the vertices at rest
-    uint first_vertex;     ///< of the vertex buffers
-    uint first_triangle;   ///< of the triangle buffer
+    uint first_rest;      ///< of the vertices at rest
+    uint first_vertex;    ///< of the vertex buffers
+    uint first_triangle;  ///< of the triangle buffer
     uint body;
-    uint first_joint;      ///< its node, then the joints of its skin
-    uint influences;       ///< joints that pull at a vertex; 0: all follow the node
+    uint first_joint;  ///< its node, then the joints of its skin
+    uint influences;   ///< joints that pull at a vertex; 0: all follow the node
     uint first_influence;
     uint targets;
-    uint first_target;     ///< of each target the positions, then the normals of all vertices
+    uint first_target;  ///< of each target the positions, then the normals of all vertices
     uint first_weight;
     uint flat_shaded;
 };
@@ -239,10 +241,10 @@ SHARED_SIZE(DeformParams, 16);
 struct WaterParams {
     uint cells;
     float size;
-    float step;         ///< seconds
-    float stiffness;    ///< (speed / spacing)², per second squared
-    float damping;      ///< per second
-    float rest;         ///< seconds from the last step to the moment
+    float step;       ///< seconds
+    float stiffness;  ///< (speed / spacing)², per second squared
+    float damping;    ///< per second
+    float rest;       ///< seconds from the last step to the moment
     uint first_vertex;
     uint body;
     vec2 drop_at;
@@ -255,15 +257,15 @@ SHARED_SIZE(WaterParams, 52);
 /// Something that swims, in a moment.
 struct GpuFloat {
     uint instance;
-    vec2 at;        ///< x, z
-    float turned;   ///< about the vertical, radians
+    vec2 at;       ///< x, z
+    float turned;  ///< about the vertical, radians
     float radius;
 };
 SHARED_SIZE(GpuFloat, 20);
 
 struct SwarmParams {
     uint bodies;
-    float phase;    ///< of the swarm's period, [0, 1)
+    float phase;  ///< of the swarm's period, [0, 1)
 };
 SHARED_SIZE(SwarmParams, 8);
 
@@ -307,10 +309,10 @@ SHARED_SIZE(SurfaceId, 8);
 
 struct TraceParams {
     PeelrayTree tree;
-    uint count;     ///< rays in the queue; with `counted`: room in the queue
-    uint counted;   ///< 1: the count is queue[counter]
+    uint count;    ///< rays in the queue; with `counted`: room in the queue
+    uint counted;  ///< 1: the count is queue[counter]
     uint counter;
-    uint skips;     ///< 1: ray i must not hit skip[i]
+    uint skips;       ///< 1: ray i must not hit skip[i]
     float tolerance;  ///< of `tolerance` hits, world units
     uvec2 block;      ///< pixels of a block of two_level
 };
@@ -323,14 +325,14 @@ struct GpuMaterial {
     float metallic;
     vec3 emissive;
     float roughness;
-    vec3 absorption;    ///< per world unit inside the volume; 0: none
+    vec3 absorption;  ///< per world unit inside the volume; 0: none
     float transmission;
     float ior;
-    int texture;        ///< base colour, -1: none
-    uint flags;         ///< MATERIAL_*
-    float thickness;    ///< of a volume, world units; rays measure it, cube maps cannot
-    float alpha;        ///< of the base colour
-    float alpha_cutoff; ///< 0: opaque
+    int texture;         ///< base colour, -1: none
+    uint flags;          ///< MATERIAL_*
+    float thickness;     ///< of a volume, world units; rays measure it, cube maps cannot
+    float alpha;         ///< of the base colour
+    float alpha_cutoff;  ///< 0: opaque
 };
 SHARED_SIZE(GpuMaterial, 72);
 #define MATERIAL_THIN 1u
@@ -341,17 +343,17 @@ struct GpuTexture {
     uint offset;  ///< first texel in the texel buffer
     uint width;
     uint height;
-    uint flags;   ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), bit 4: nearest
+    uint flags;  ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), bit 4: nearest
 };
 SHARED_SIZE(GpuTexture, 16);
 
 struct GpuLight {
     vec3 position;
-    uint kind;          ///< 0 directional, 1 point, 2 spot
-    vec3 direction;     ///< unit, the way the light travels
-    float range;        ///< world units
+    uint kind;       ///< 0 directional, 1 point, 2 spot
+    vec3 direction;  ///< unit, the way the light travels
+    float range;     ///< world units
     vec3 color;
-    float cone_scale;   ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
+    float cone_scale;  ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
     float cone_offset;
 };
 SHARED_SIZE(GpuLight, 52);
@@ -361,15 +363,15 @@ struct Frame {
     PeelrayTree tree;
     // Camera: ray through the pixel position p: forward + right * (2 p.x/width - 1) + up * (1 - 2 p.y/height).
     vec3 eye;
-    float near;          ///< depth 1 of the reversed depth buffer
-    vec3 right;          ///< times tan(half the horizontal field of view); orthographic: times half the width
+    float near;  ///< depth 1 of the reversed depth buffer
+    vec3 right;  ///< times tan(half the horizontal field of view); orthographic: times half the width
     uint orthographic;
     vec3 up;
-    float far;           ///< orthographic only
-    vec3 forward;        ///< unit
+    float far;     ///< orthographic only
+    vec3 forward;  ///< unit
     uint width;
     uint height;
-    uint row_pixels;     ///< width rounded up to 8: records of one row of 8x8 tiles / 8
+    uint row_pixels;  ///< width rounded up to 8: records of one row of 8x8 tiles / 8
     uint lights;
     // Environment.
     uvec2 env_size;
@@ -377,14 +379,15 @@ struct Frame {
     float sun_cosine;    ///< of the sun's angular radius; 2: no sun disc
     vec3 sun_direction;  ///< to the sun
     vec3 sun_radiance;
-    uint effects;        ///< EFFECT_*
-    vec3 irradiance[9];  ///< spherical harmonics of the environment's irradiance, band by band
-    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of exact hits)
+    uint effects;          ///< EFFECT_*
+    vec3 irradiance[9];    ///< spherical harmonics of the environment's irradiance, band by band
+    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of
+                           ///< exact hits)
     uint spp;
-    uint last_level;     ///< level whose hits spawn no more rays
-    float rough_limit;   ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
-    float tolerance;     ///< of `tolerance` hits, world units; else 0
-    uvec2 block;         ///< pixels of a block of two_level
+    uint last_level;    ///< level whose hits spawn no more rays
+    float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
+    float tolerance;    ///< of `tolerance` hits, world units; else 0
+    uvec2 block;        ///< pixels of a block of two_level
 };
 SHARED_SIZE(Frame, 296);
 #define EFFECT_REFLECTION 1u
@@ -434,16 +437,17 @@ struct LevelParams {
     uint next_capacity;  ///< room in the next level's queue
     uint sample_index;
     vec2 jitter;
-    uint first_row;      ///< of the band, a multiple of 8
+    uint first_row;  ///< of the band, a multiple of 8
 };
 SHARED_SIZE(LevelParams, 28);
 
-// --- The baseline: cube maps and shadow maps (src/render/cube_maps, shadow_maps; shaders/cubemap_*, probe_*, shadow_depth) ---
+// --- The baseline: cube maps and shadow maps (src/render/cube_maps, shadow_maps; shaders/cubemap_*, probe_*,
+// shadow_depth) ---
 
 /// An object and, if it reflects or refracts, its probe: the cube map of its surroundings.
 struct GpuObject {
-    vec3 lower;       ///< its box
-    uint probe;       ///< first texel of its cube map; NO_PROBE
+    vec3 lower;  ///< its box
+    uint probe;  ///< first texel of its cube map; NO_PROBE
     vec3 upper;
     uint face;        ///< texels along a side of the sharpest level's faces
     uint levels;      ///< of roughness: 1 or PROBE_LEVELS
@@ -451,19 +455,20 @@ struct GpuObject {
 };
 SHARED_SIZE(GpuObject, 40);
 #define NO_PROBE 0xffffffffu
-/// Level k is blurred to the roughness (k / (PROBE_LEVELS - 1))² and has faces of max(face >> k, PROBE_SMALLEST_FACE) texels.
+/// Level k is blurred to the roughness (k / (PROBE_LEVELS - 1))² and has faces of max(face >> k, PROBE_SMALLEST_FACE)
+/// texels.
 #define PROBE_LEVELS 6u
 #define PROBE_SMALLEST_FACE 8u
 
 /// One shadow map: a view from a light. A light has six in the table; one without texels is not used.
 struct GpuShadowMap {
     vec3 eye;
-    uint first;         ///< texel
-    vec3 right;         ///< as in Frame
-    uint size;          ///< texels along a side; 0: not used
+    uint first;  ///< texel
+    vec3 right;  ///< as in Frame
+    uint size;   ///< texels along a side; 0: not used
     vec3 up;
     uint orthographic;
-    vec3 forward;       ///< unit; the depth is measured along it
+    vec3 forward;  ///< unit; the depth is measured along it
 };
 SHARED_SIZE(GpuShadowMap, 60);
 
@@ -486,10 +491,17 @@ struct MapParams {
 };
 SHARED_SIZE(MapParams, 24);
 
+/// Parameters of the ray_setup passes: the box of the scene.
+struct RaySetupParams {
+    vec3 lower;
+    vec3 upper;
+};
+SHARED_SIZE(RaySetupParams, 24);
+
 struct TonemapParams {
     uint pixels;
-    float scale;   ///< exposure / samples
-    uint curve;    ///< 0 none, 1 ACES, 2 neutral
+    float scale;  ///< exposure / samples
+    uint curve;   ///< 0 none, 1 ACES, 2 neutral
 };
 SHARED_SIZE(TonemapParams, 12);
 

@@ -74,7 +74,7 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
             {"--batch", t.batch},
             {"--depth", text(std::optional(t.depth))},
             {"--rebuild", flag(a.rebuild)},
-            {"--aov", list(a.aovs, aov_names())}};
+            {"--aov", list(a.aovs, all_aov_names())}};
 }
 
 /// Files by their names as seen from the scene's folder, so that the whole may be moved.

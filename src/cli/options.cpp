@@ -253,9 +253,12 @@ void add_render(CLI::App& program, RenderArguments& a) {
     add_picture_options(app, a, false);
     add_sequence_options(app, a.sequence);
     const char* output = "More output";
-    add_parsed(app, "--aov", a.aovs, parse_aovs, "a list out of depth,normal,albedo,position,triangle,material, or all",
-               "also write these to NAME.KIND.exr beside NAME.png: a list out of "
-               "depth,normal,albedo,position,triangle,material, or all")
+    add_parsed(
+        app, "--aov", a.aovs, parse_aovs,
+        "a list out of depth,normal,albedo,position,triangle,material,reflection,box,directions, or all",
+        "also write these to NAME.KIND.exr beside NAME.png: a list out of "
+        "depth,normal,albedo,position,triangle,material, or all of them; or out of reflection,box,directions: what "
+        "the paper sets up for mirror rays (its Figure 7)")
         ->type_name("LIST")
         ->group(output);
     app.add_option("--stats", a.stats, "also write times, rays and memory as JSON")->type_name("FILE")->group(output);
@@ -387,7 +390,8 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         ->type_name("N|NxM")
         ->default_str("8")
         ->group(group);
-    add_choice(app, "--routing", a.routing, {"geometry", "draws"}, "how peel and abuffer send triangles to the three images")
+    add_choice(app, "--routing", a.routing, {"geometry", "draws"},
+               "how peel and abuffer send triangles to the three images")
         ->group(group);
     add_number<double>(app, "--tolerance", a.tolerance,
                        "distance of a hit of tolerance, world units; default: 0.001 if the object were one unit long")

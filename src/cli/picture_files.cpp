@@ -40,6 +40,14 @@ void write_aovs(const Picture& result, const std::vector<std::string>& names, co
             write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
         if (name == "albedo")
             write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
+        if (name == "reflection")
+            write({"X", "Y", "Z"},
+                  {component(a.reflection, 0), component(a.reflection, 1), component(a.reflection, 2)});
+        if (name == "box") write({"X", "Y", "Z"}, {component(a.box, 0), component(a.box, 1), component(a.box, 2)});
+        if (name == "directions")
+            write({"x.U", "x.V", "y.U", "y.V", "z.U", "z.V"},
+                  {component(a.directions_xy, 0), component(a.directions_xy, 1), component(a.directions_xy, 2),
+                   component(a.directions_xy, 3), component(a.directions_z, 0), component(a.directions_z, 1)});
         if (name == "position")
             write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
     }

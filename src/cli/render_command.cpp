@@ -6,6 +6,7 @@
 #include "cli/picture_files.h"
 #include "cli/sequence.h"
 #include "cli/stats.h"
+#include "cli/values.h"
 
 namespace peelray {
 namespace {
@@ -35,6 +36,7 @@ void run_render(const RenderArguments& a) {
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
     RenderSettings settings = settings_of(a);
     settings.aovs = !a.aovs.empty();
+    settings.ray_setup = wants_ray_setup(a.aovs);
     std::vector<fs::path> outputs = {a.output};
     for (const std::string& name : a.aovs) outputs.push_back(aov_path(a.output, name));
     if (!a.stats.empty()) outputs.push_back(a.stats);

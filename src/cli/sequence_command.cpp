@@ -8,6 +8,7 @@
 #include "cli/manifest.h"
 #include "cli/picture_files.h"
 #include "cli/stats.h"
+#include "cli/values.h"
 #include "cli/video.h"
 #include "image/image.h"
 
@@ -70,6 +71,7 @@ class Run {
 MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
     RenderSettings settings = settings_of(arguments_);
     settings.aovs = !arguments_.aovs.empty();
+    settings.ray_setup = wants_ray_setup(arguments_.aovs);
     try {
         return maker_.make(arguments_.tracing.tracer, settings, sequence_.moment(frame), progress);
     } catch (const Interrupted&) {

@@ -44,7 +44,7 @@ std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice&
         return std::min({body.grid.dims.x, body.grid.dims.y, body.grid.dims.z}) <= 16;
     };
     for (const LdcBody& body : bodies)
-        if (!flat(body) && (!worst || voxels(body) < voxels(*worst)) worst = &body;
+        if (!flat(body) && (!worst || voxels(body) < voxels(*worst))) worst = &body;
     if (!worst || !(voxels(*worst) < 0.5f)) return {};
     return fmt::format(
         "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; --tolerance {:.2g} "

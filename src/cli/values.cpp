@@ -86,7 +86,7 @@ std::optional<std::vector<std::string>> parse_effects(const std::string& text) {
 }
 
 std::optional<std::vector<std::string>> parse_aovs(const std::string& text) {
-    return text == "all" ? std::optional(aov_names()) : parse_names(text, aov_names());
+    return text == "all" ? std::optional(aov_names()) : parse_names(text, all_aov_names());
 }
 
 namespace {
@@ -153,6 +153,26 @@ const std::vector<std::string>& hit_test_names() {
 const std::vector<std::string>& effect_names() {
     static const std::vector<std::string> names = {"reflection", "refraction", "shadow", "ambient"};
     return names;
+}
+
+const std::vector<std::string>& ray_setup_names() {
+    static const std::vector<std::string> names = {"reflection", "box", "directions"};
+    return names;
+}
+
+const std::vector<std::string>& all_aov_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all = aov_names();
+        all.insert(all.end(), ray_setup_names().begin(), ray_setup_names().end());
+        return all;
+    }();
+    return names;
+}
+
+bool wants_ray_setup(const std::vector<std::string>& aovs) {
+    return std::any_of(aovs.begin(), aovs.end(), [](const std::string& name) {
+        return std::find(ray_setup_names().begin(), ray_setup_names().end(), name) != ray_setup_names().end();
+    });
 }
 
 const std::vector<std::string>& aov_names() {

@@ -39,7 +39,7 @@ std::optional<FrameRange> parse_frames(const std::string& text);
 std::optional<Shard> parse_shard(const std::string& text);
 /// A list out of effect_names(), or "none": an empty one.
 std::optional<std::vector<std::string>> parse_effects(const std::string& text);
-/// A list out of aov_names(), or "all".
+/// A list out of all_aov_names(), or "all": aov_names().
 std::optional<std::vector<std::string>> parse_aovs(const std::string& text);
 
 /// Tracers to compare; none twice.
@@ -60,5 +60,10 @@ const std::vector<std::string>& traversal_names();
 const std::vector<std::string>& hit_test_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& aov_names();
+/// The auxiliary pictures of what the paper sets up before it traces (Figure 7).
+const std::vector<std::string>& ray_setup_names();
+const std::vector<std::string>& all_aov_names();
+/// Is one of ray_setup_names() among these?
+bool wants_ray_setup(const std::vector<std::string>& aovs);
 
 }  // namespace peelray

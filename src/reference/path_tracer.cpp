@@ -62,6 +62,7 @@ void prepare(Picture& picture, const PictureSettings& s) {
     a.material.assign(pixels, -1);
     a.normal.assign(pixels, glm::vec4(0));
     a.albedo = a.position = a.normal;
+    a.reflection = a.box = a.directions_xy = a.directions_z = a.normal;
 }
 
 }  // namespace
@@ -82,14 +83,15 @@ struct PathTracer::Impl {
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
 
-    void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit) const;
+    void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
     void pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
                RayCounts& rays) const;
     RayCounts work(Picture& picture, const RenderContext& context, const View& view, Tiles& tiles,
                    const std::function<void(double)>& progress) const;
 };
 
-void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit) const {
+void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit,
+                            const Box& box) const {
     const Surface s = surfaces.at(hit.triangle, hit.u, hit.v, path.direction);
     Aovs& a = picture.aovs;
     a.depth[at] = float(hit.t);
@@ -98,6 +100,14 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.normal[at] = glm::vec4(s.normal, 0);
     a.albedo[at] = glm::vec4(s.base_color, 1);
     a.position[at] = glm::vec4(s.position, 1);
+    const glm::dvec3 d = glm::reflect(glm::normalize(path.direction), s.normal);
+    double t = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; k++)
+        if (d[k] != 0) t = std::min(t, ((d[k] > 0 ? box.upper : box.lower)[k] - s.position[k]) / d[k]);
+    a.reflection[at] = glm::vec4(d, 1);
+    a.box[at] = glm::vec4(s.position + std::max(t, 0.0) * d, 1);
+    a.directions_xy[at] = glm::vec4(d.y, d.z, d.z, d.x);
+    a.directions_z[at] = glm::vec4(d.x, d.y, 0, 0);
 }
 
 void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
@@ -114,7 +124,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
-        if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit);
+        if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit, context.box);
         rays.reflection += shader.rays().reflection;
         rays.refraction += shader.rays().refraction;
         rays.shadow += shader.rays().shadow;
@@ -156,7 +166,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     const float aspect = float(settings.width) / float(settings.height);
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
     const View view = make_view(settings.camera, aspect, box.lower, box.upper);
-    const RenderContext context{impl_->bvh, impl_->surfaces, impl_->surroundings, impl_->lights, settings};
+    const RenderContext context{impl_->bvh, impl_->surfaces, impl_->surroundings, impl_->lights, settings, box};
     Picture picture;
     prepare(picture, settings);
     Tiles tiles(settings);

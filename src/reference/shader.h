@@ -16,6 +16,7 @@ struct RenderContext {
     const Surroundings& surroundings;
     const std::vector<Light>& lights;
     const PictureSettings& settings;
+    Box box;  ///< of the scene
 };
 
 /// Follows the rays of one sample of one pixel.

@@ -112,6 +112,7 @@ struct Renderer::Impl {
     void record_band(uint32_t sample, uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
+    void render_ray_setup(Aovs& aovs);
     void describe(RenderStats& stats);
 };
 
@@ -387,6 +388,44 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     }
 }
 
+/// The paper's Figure 7, in render targets.
+void Renderer::Impl::render_ray_setup(Aovs& aovs) {
+    const uint32_t pixels = settings.width * settings.height;
+    RasterSetup setup;
+    setup.colors.assign(4, VK_FORMAT_R32G32B32A32_SFLOAT);
+    setup.depth = VK_COMPARE_OP_ALWAYS;
+    std::vector<Image2D> images;
+    DrawTargets targets;
+    for (size_t i = 0; i < setup.colors.size(); i++)
+        images.emplace_back(device, "mirror rays", settings.width, settings.height, setup.colors[i],
+                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                            VK_IMAGE_ASPECT_COLOR_BIT);
+    for (const Image2D& image : images) targets.colors.push_back(&image);
+    targets.width = settings.width;
+    targets.height = settings.height;
+    const Buffer stored(device, "mirror rays", uint64_t(pixels) * 64);
+    const RaySetupParams p{box.lower, box.upper};
+    const DrawRange whole{0, 1, 0, 1};
+    const Binding bindings[] = {{"frame", view.frame}, {"aovs", aov_buffer}};
+    commands.draw(device.raster_pass("ray_setup", setup), bindings, p, std::span(&whole, 1), targets);
+    commands.run(device.pass("ray_setup_store"),
+                 {{"frame", view.frame},
+                  {"ray_setups", stored},
+                  {"reflection", images[0]},
+                  {"box_point", images[1]},
+                  {"directions_xy", images[2]},
+                  {"directions_z", images[3]}},
+                 pixels, groups_for(pixels, 64));
+    commands.submit();
+    const auto data = commands.download<glm::vec4>(stored, pixels * 4);
+    for (size_t i = 0; i < pixels; i++) {
+        aovs.reflection.push_back(data[4 * i]);
+        aovs.box.push_back(data[4 * i + 1]);
+        aovs.directions_xy.push_back(data[4 * i + 2]);
+        aovs.directions_z.push_back(data[4 * i + 3]);
+    }
+}
+
 Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment)
     : impl_(std::make_unique<Impl>(device, scene, assembly, environment)) {}
 
@@ -461,6 +500,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     for (glm::vec4& pixel : result.radiance) pixel /= float(settings.spp);
     result.encoded = r.commands.download<uint32_t>(r.encoded, pixels);
     if (settings.aovs) r.render_aovs(result.aovs);
+    if (settings.aovs && settings.ray_setup) r.render_ray_setup(result.aovs);
     stats.peak_bytes = r.device.peak_allocated();
     return result;
 }

@@ -25,7 +25,8 @@ struct PictureSettings {
     bool ambient = false;  ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
     float exposure = 0;    ///< stops; applies to the encoded picture only
     Tonemap tonemap = Tonemap::neutral;
-    bool aovs = false;  ///< also the auxiliary pictures
+    bool aovs = false;       ///< also the auxiliary pictures
+    bool ray_setup = false;  ///< and those of Aovs from `reflection` on
 };
 
 /// Auxiliary pictures at the pixel centres; width·height entries each, row 0 at the top.
@@ -33,6 +34,9 @@ struct Aovs {
     std::vector<float> depth;                         ///< distance along the camera ray, world units; +inf: nothing
     std::vector<float> triangle, material;            ///< index; -1: nothing
     std::vector<glm::vec4> normal, albedo, position;  ///< world space; w: 1 where there is a surface (normal: 0)
+    /// What the paper sets up for every mirror ray (Figure 7): its direction, where it leaves the scene's box, its
+    /// direction in the x-LDI (y, z) and y-LDI (z, x), in the z-LDI (x, y).
+    std::vector<glm::vec4> reflection, box, directions_xy, directions_z;
 };
 
 struct RayCounts {

@@ -1,5 +1,6 @@
 // `peelray render` where all is well: every option, at 64x48.
 #include <cmath>
+#include <map>
 
 #include "cli/program_fixture.h"
 #include "image/image.h"
@@ -29,6 +30,11 @@ const std::vector<std::string> kAway = {"--eye", "0,0,5", "--look", "0,0,10"};
 std::vector<std::string> away(std::vector<std::string> more) {
     more.insert(more.end(), kAway.begin(), kAway.end());
     return more;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
 }
 
 TEST_F(RenderCommand, EveryBuiltinScene) {
@@ -68,6 +74,23 @@ TEST_F(RenderCommand, AuxiliaryPictures) {
     EXPECT_NEAR(read_hdr(out("a.depth.exr")).at(32, 23).x, 2, 0.01);
     EXPECT_EQ(read_hdr(out("a.material.exr")).at(32, 23).x, 0);
     EXPECT_LE(read_hdr(out("a.triangle.exr")).at(33, 22).x, 1);
+}
+
+TEST_F(RenderCommand, WhatThePaperSetsUpForMirrorRays) {
+    const std::vector<std::string> view = {"--aov",    "reflection,box,directions", "--eye", "0.5,0.5,3", "--look",
+                                           "0.5,0.5,0"};
+    const std::vector<std::string> written = {"a.box.exr", "a.directions.exr", "a.png", "a.reflection.exr"};
+    expect_done(render(in("cube.obj"), view), written);
+    std::map<std::string, Image> ours;
+    for (const std::string name : {"reflection", "box"}) ours[name] = read_hdr(out("a." + name + ".exr"));
+    expect_done(render(in("cube.obj"), joined(view, {"--tracer", "reference"})), written);
+    double most = 0;  // of X, which is what is read of such files
+    for (const std::string name : {"reflection", "box"}) {
+        const Image theirs = read_hdr(out("a." + name + ".exr"));
+        for (size_t i = 0; i < theirs.pixels.size(); i++)
+            most = std::max(most, std::abs(double(theirs.pixels[i].x) - double(ours[name].pixels[i].x)));
+    }
+    EXPECT_LT(most, 1e-4);
 }
 
 TEST_F(RenderCommand, AuxiliaryPicturesByName) {
@@ -235,11 +258,6 @@ const std::vector<std::vector<std::string>> kByPixel = {{"--traversal", "two-lev
                                                         {"--traversal", "two-level", "--batch", "layers"},
                                                         {"--traversal", "two-level", "--batch", "rays"},
                                                         {"--traversal", "mipmap"}};
-
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
 
 TEST_F(RenderCommand, EveryTraversalMakesTheSamePicture) {
     const std::string voxels = bytes("builtin:glass", {"--hit", "exact", "--ldc", "64"});

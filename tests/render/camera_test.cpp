@@ -55,6 +55,42 @@ Stage still_life(const glm::vec3& offset) {
     return stage;
 }
 
+// The paper's Figure 7.
+TEST_F(CameraTest, MirrorRaysAreSetUpAsThePaperHasThem) {
+    const Stage stage = still_life({0, 0, 0});
+    const Box box = bounds(stage.scene);
+    for (const Camera& camera : {perspective({3, 4, 7}, {0, 1, 0}, 50), orthographic({3, 4, 7}, {0, 1, 0}, 6)}) {
+        RenderSettings settings = settings_for(camera, 96);
+        settings.aovs = settings.ray_setup = true;
+        const Aovs a = render(stage, black, settings).aovs;
+        Tally result;
+        for (uint32_t y = 0; y < settings.height; y++)
+            for (uint32_t x = 0; x < settings.width; x++) {
+                const size_t i = size_t(y) * settings.width + x;
+                if (a.position[i].w == 0) {
+                    result.add(a.reflection[i] == glm::vec4(0) && a.box[i] == glm::vec4(0), [] { return "the sky"; });
+                    continue;
+                }
+                const ViewRay ray = view_ray(camera, settings.width, settings.height, x + 0.5, y + 0.5);
+                const glm::dvec3 p(a.position[i]), n(a.normal[i]), d(a.reflection[i]), q(a.box[i]);
+                const glm::dvec3 want = ray.direction - 2 * glm::dot(ray.direction, n) * n;
+                // In the box, on one of its sides, and ahead.
+                double side = 1e9;
+                bool inside = true;
+                for (int k = 0; k < 3; k++) {
+                    side = std::min({side, std::abs(q[k] - box.lower[k]), std::abs(q[k] - box.upper[k])});
+                    inside = inside && q[k] > box.lower[k] - 1e-4 && q[k] < box.upper[k] + 1e-4;
+                }
+                const bool ahead = glm::length(q - p - glm::length(q - p) * d) < 1e-4;
+                const glm::vec4 &e = a.directions_xy[i], &f = a.directions_z[i];
+                const bool turned = glm::dvec3(f.x, f.y, e.y) == d && glm::dvec3(e.w, e.x, e.z) == d;
+                result.add(near(d, want, 1e-5) && side < 1e-4 && inside && ahead && turned,
+                           [&] { return fmt::format("pixel {},{}: {}, box {}", x, y, text(d), text(q)); });
+            }
+        result.expect(0, 96 * 96);
+    }
+}
+
 TEST_F(CameraTest, FarFromTheOriginKeepsPrecision) {
     const glm::vec3 offset(100000, -50000, 70000);
     RenderSettings settings = settings_for(perspective({3, 4, 7}, {0, 1, 0}, 50), 96);
