@@ -7,8 +7,9 @@
 uint wrapTexel(int i, uint size, uint mode) {
     const int n = int(size);
     if (mode == 2u) return uint(clamp(i, 0, n - 1));
-    if (mode == 0u) return uint(((i % n) + n) % n);
-    const int m = ((i % (2 * n)) + 2 * n) % (2 * n);
+    // From -1 on; of negative numbers GLSL leaves the remainder undefined, and devices differ.
+    if (mode == 0u) return uint((i + n) % n);
+    const int m = (i + 2 * n) % (2 * n);
     return uint(m < n ? m : 2 * n - 1 - m);
 }
 
