@@ -53,6 +53,10 @@ void TracingArguments::check() const {
         fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
     if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
         fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
+    if (builder == "peel" && hit == "exact")
+        fail(
+            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
+            "--builder abuffer or compute");
     if (batch != "none" && traversal == "voxel")
         fail(
             "--traversal voxel takes one sample and one ray at a time: use --batch {} with --traversal two-level or "
