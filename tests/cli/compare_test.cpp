@@ -159,12 +159,12 @@ TEST_F(CompareCommand, WrongUsageAndBadInput) {
     expect_refused(compare(in("cube.obj"), {"--hit", "exact,exact"}), 2, "each once");
     expect_refused(compare(in("cube.obj"), {"--tracer", "ldc"}), 2, "--tracer");
     expect_refused(compare(in("cube.obj"), {"--tracers", "ldc,khr"}), 1, "--tracer khr is not built");
-    expect_refused(compare(in("cube.obj"), {"--hit", "tolerance"}), 1, "--hit tolerance is not built");
+    expect_refused(compare(in("cube.obj"), {"--hit", "exact", "--builder", "peel"}), 1, "--builder peel captures");
     expect_refused(compare(in("no.obj")), 1, "no.obj");
     expect_refused(compare(in("cube.obj"), {"--picture", in("no.png")}), 1, "no.png");
     expect_refused(compare(in("cube.obj"), {"--strip", out("s.jpg")}), 1, "name it .png");
-    expect_refused(compare(in("cube.obj"), {"--tracers", "none", "--hit", "tolerance"}), 1,
-                   "--hit tolerance is not built");
+    expect_refused(compare(in("cube.obj"), {"--tracers", "none", "--hit", "exact", "--builder", "peel"}), 1,
+                   "--builder peel captures");
     expect_refused(compare(in("cube.obj"), {"--tracers", "ldc", "--worst", out("w.png")}), 1, "two pictures");
     expect_refused(compare(in("cube.obj"), {"--json", out("r.html")}), 1, "written twice");
     expect_refused(run({"compare", in("cube.obj"), "-o", out("r.png")}), 1, "name '");

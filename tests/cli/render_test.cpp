@@ -255,7 +255,6 @@ TEST_F(RenderCommand, HitTestsAndResolutions) {
 
 const std::vector<std::vector<std::string>> kByPixel = {{"--traversal", "two-level"},
                                                         {"--traversal", "two-level", "--block", "3x16"},
-                                                        {"--traversal", "two-level", "--batch", "layers"},
                                                         {"--traversal", "two-level", "--batch", "rays"},
                                                         {"--traversal", "mipmap"}};
 

@@ -97,7 +97,7 @@ TEST_F(TraversalTest, ExactHitsAreTheSameBitForBit) {
     for (const char* name : {"builtin:blob:20000", "builtin:teapots"})
         for (uint32_t resolution : {48u, 256u}) {
             SCOPED_TRACE(fmt::format("{} at {}", name, resolution));
-            expect_same(flatten(load_scene(name)), resolution, resolution < 100 ? 600 : 2500);
+            expect_same(flatten(load_scene(name)), resolution, resolution < 100 ? 400 : 1500);
         }
 }
 
