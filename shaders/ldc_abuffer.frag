@@ -20,7 +20,7 @@ uint reserve(uint count) {
     uint base = 0u;
     if (subgroupElect()) {
         base = atomicAdd(counters[0].fragments, all);
-        if (base + all < base) counters[0].wrapped = 1u;
+        if (base + all < base) atomicOr(counters[0].wrapped, LDC_WRAPPED_FRAGMENTS);
     }
     return subgroupBroadcastFirst(base) + before;
 }

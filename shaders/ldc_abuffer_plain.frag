@@ -14,7 +14,7 @@ LDC_ROUTED(in)
 
 uint reserve(uint count) {
     const uint base = atomicAdd(counters[0].fragments, count);
-    if (base + count < base) counters[0].wrapped = 1u;
+    if (base + count < base) atomicOr(counters[0].wrapped, LDC_WRAPPED_FRAGMENTS);
     return base;
 }
 #include "ldc_abuffer.glsl"

@@ -20,7 +20,7 @@ uint ldcReserve(uint count) {
     }
     if (lane == gl_WorkGroupSize.x - 1u && emit_sums[lane] != 0u) {
         emit_base = atomicAdd(counters[0].fragments, emit_sums[lane]);
-        if (emit_base + emit_sums[lane] < emit_base) counters[0].wrapped = 1u;
+        if (emit_base + emit_sums[lane] < emit_base) atomicOr(counters[0].wrapped, LDC_WRAPPED_FRAGMENTS);
     }
     barrier();
     const uint position = emit_base + emit_sums[lane] - count;

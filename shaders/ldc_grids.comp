@@ -26,6 +26,8 @@ void main() {
             own = uvec4(tops.y * tops.z, tops.z * tops.x, tops.x * tops.y, tops.x * tops.y * tops.z);
             if (params.by_pixel != 0u) own.w = 256u * (own.x + own.y + own.z);
             bodies[body].grid = grid;
+            if (params.by_pixel == 0u && params.sampling == LDC_CENTRE && bodies[body].tolerance * grid.inv_voxel > LDC_FARTHEST_BY_VOXEL)
+                atomicOr(counters[0].wrapped, LDC_FAR_TOLERANCE);
         }
         partial[lane] = own;
         barrier();
@@ -40,6 +42,7 @@ void main() {
             bodies[body].first_line = before.xyz;
             bodies[body].first_cell = params.first_cell + before.w;
         }
+        if (lane == 0u && carry.w + partial[63].w < carry.w) atomicOr(counters[0].wrapped, LDC_WRAPPED_CELLS);
         carry += partial[63];
         barrier();
     }

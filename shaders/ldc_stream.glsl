@@ -26,7 +26,7 @@ void ldcCapture(vec3 normal, vec4 color) {
     const uvec2 pixel = uvec2(gl_FragCoord.xy);
     if (any(greaterThanEqual(vec2(pixel), ldcToLdi(vec3(dims), axis).xy))) return;
     const uint position = atomicAdd(counters[0].fragments, 1u);
-    if (position == 0xffffffffu) counters[0].wrapped = 1u;
+    if (position == 0xffffffffu) atomicOr(counters[0].wrapped, LDC_WRAPPED_FRAGMENTS);
     if (position >= params.fragment_capacity) return;
     float w = ldcDepth(LDC_ROUTED_TRIANGLE, vec2(pixel) + 0.5);
     if (params.by_pixel == 2u) w = ldcRoundDepth(w, float(dims[axis]));

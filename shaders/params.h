@@ -75,12 +75,19 @@ struct LdcCounters {
     uint longest;     ///< samples of the longest list; by pixel: the depth complexity
     uint degenerate;  ///< triangles without area: dropped
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
-    uint wrapped;     ///< 1: more fragments than 32 bits count
+    uint wrapped;     ///< bit 0: more fragments than 32 bits count; 1: cells or pixels; 2: a tolerance beyond what by-voxel samples hold
     uvec3 lines;      ///< of ldc_sat_scan along x, y, z
     uint complexity;  ///< of peeling: the depth complexity, largest of all bodies
     uint passes;      ///< of peeling: made for all bodies
 };
 SHARED_SIZE(LdcCounters, 68);
+
+/// Bits of LdcCounters::wrapped.
+#define LDC_WRAPPED_FRAGMENTS 1u
+#define LDC_WRAPPED_CELLS 2u
+#define LDC_FAR_TOLERANCE 4u
+/// By voxel a sample's depth is stored within so many voxels of the voxel that it is filed under.
+#define LDC_FARTHEST_BY_VOXEL 2.0f
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
 #define LDC_GROUPS_BIG 0u

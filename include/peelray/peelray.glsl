@@ -105,7 +105,7 @@ struct PeelrayLocal {
     float s_min;
     float s_best;    ///< the nearest hit so far, or the end of the ray
     float s_begin, s_end;  ///< in the cube
-    float tolerance;       ///< of `tolerance` hits, voxels
+    vec3 tolerance;        ///< of `tolerance` hits along each axis, voxels
 };
 
 /// The ray as far as a hit at `t_best`; false: it does not meet the cube.
@@ -117,9 +117,10 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
     r.d = turned * scale;
     r.s_per_t = place.inv_voxel / scale;
     r.inv = peelrayInverse(r.d);
-    r.tolerance = 0.0;
+    r.tolerance = vec3(0);
     if (options.hit == PEELRAY_TOLERANCE)
-        r.tolerance = options.tolerance * place.inv_voxel * length(turned) / length(ray.direction);
+        // How long a unit of the world along an axis of the cube is there; exact for transforms without shear.
+        r.tolerance = options.tolerance * place.inv_voxel * vec3(length(place.x), length(place.y), length(place.z));
     const vec3 size = vec3(tops) * 16.0;
 
     // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
@@ -176,13 +177,13 @@ bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, inout P
 }
 
 /// `tolerance`: where a ray, while it is in the column of the pixel [0, 1] x [0, 1], comes nearest in depth to a sample at depth `w`;
-/// false: it stays farther from it than the tolerance, or what it has hit lies before. `o`, `d`, `inv` as the LDI sees them.
-bool peelrayTestDepth(PeelrayLocal r, vec3 o, vec3 d, vec3 inv, float w, out float s) {
+/// false: it stays farther from it than `tolerance` (voxels), or what it has hit lies before. `o`, `d`, `inv` as the LDI sees them.
+bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv, float w, out float s) {
     const vec2 a = -o.xy * inv.xy, b = (1.0 - o.xy) * inv.xy;
     const vec2 enters = min(a, b), leaves = max(a, b);
     const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_best, min(leaves.x, leaves.y));
     s = abs(d.z) < 1e-12 ? s_in : clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
-    return s_in <= s_out && abs(o.z + s * d.z - w) <= r.tolerance && s > r.s_min && s < r.s_best;
+    return s_in <= s_out && abs(o.z + s * d.z - w) <= tolerance && s > r.s_min && s < r.s_best;
 }
 
 /// The LDI's view of a vector: (u, v, w).
@@ -257,7 +258,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             const vec2 at = centre + s_plane * dr.xy;
             if (options.hit == PEELRAY_TOLERANCE) {
                 float s_near;
-                if (peelrayTestDepth(r, or, dr, peelrayToImage(r.inv, axis), w, s_near)) {
+                if (peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToImage(r.inv, axis), w, s_near)) {
                     const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
                     if (id != skip) {
                         r.s_best = s_near;

@@ -9,7 +9,7 @@ const uint PEELRAY_SHORT_LIST = 8u;
 
 /// Is a sample hit nearer than what has been hit so far? Then that is in `r` and `hit`. `s_plane`: where the ray meets its plane.
 bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, uint j, float w, vec2 slope, float inv_den,
-                       float s_plane, float s, float s_out, float low, float high, vec2 centre, vec3 o_pixel, vec3 d, vec3 inv,
+                       float s_plane, float s, float s_out, float low, float high, vec2 centre, float tolerance, vec3 o_pixel, vec3 d, vec3 inv,
                        inout PeelrayLocal r, inout PeelrayHit hit) {
     if (options.hit == PEELRAY_EXACT) {
         // Conservative: as by voxel; half a step of the stored depth and slopes is less than there.
@@ -20,7 +20,7 @@ bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, Peelray
     }
     float s_hit = s_plane;
     if (options.hit == PEELRAY_TOLERANCE) {
-        if (!peelrayTestDepth(r, o_pixel, d, inv, w, s_hit)) return false;
+        if (!peelrayTestDepth(r, tolerance, o_pixel, d, inv, w, s_hit)) return false;
     } else {
         const vec2 at = centre + s_plane * d.xy;
         if (!(s_plane > r.s_min && s_plane < r.s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT)) return false;
@@ -37,7 +37,7 @@ bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, Peelray
 
 /// The samples [j, end) of a pixel, four layers at a time (the paper, section 4): four loads and four planes in flight.
 bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, uint j, uint end, float s, float s_out,
-                           float low, float high, float margin, vec2 centre, vec3 o_pixel, vec3 d, vec3 inv, inout PeelrayLocal r,
+                           float low, float high, float margin, vec2 centre, float tolerance, vec3 o_pixel, vec3 d, vec3 inv, inout PeelrayLocal r,
                            inout PeelrayHit hit) {
     bool found_one = false;
     for (; j < end; j += 4u) {
@@ -54,7 +54,7 @@ bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, Pee
         const uint count = min(4u, end - j);
         for (uint k = 0u; k < count; k++) {
             if (!peelrayTestSample(place, ray, skip, options, j + k, w[k], vec2(su[k], sv[k]), inv_den[k], s_plane[k], s, s_out, low, high, centre,
-                                   o_pixel, d, inv, r, hit))
+                                   tolerance, o_pixel, d, inv, r, hit))
                 continue;
             found_one = true;
             if (options.any_hit) return true;
@@ -64,7 +64,7 @@ bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, Pee
 }
 
 /// Hits on the samples of one pixel, while the ray is in its column, from s to s_out. `o`, `d`, `inv` as the LDI sees them.
-bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, uint list, ivec2 pixel, float s, float s_out,
+bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, uint list, ivec2 pixel, float tolerance, float s, float s_out,
                       vec3 o, vec3 d, vec3 inv, inout PeelrayLocal r, inout PeelrayHit hit) {
     uint j = PEELRAY_OFFSET(list), end = PEELRAY_OFFSET(list + 1u);
     if (j == end) return false;
@@ -74,7 +74,7 @@ bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayO
     const float w_in = o.z + s * d.z, w_out = o.z + min(s_out, r.s_best) * d.z;
     const float low = min(w_in, w_out), high = max(w_in, w_out);
     // A hit on a sample lies at most this far from its depth: as far as its patch reaches at the steepest slopes.
-    const float reach = options.hit == PEELRAY_TOLERANCE ? r.tolerance
+    const float reach = options.hit == PEELRAY_TOLERANCE ? tolerance
                         : options.hit == PEELRAY_PLANAR  ? 2.0 * PEELRAY_FOOTPRINT * PEELRAY_SLOPE_RANGE + 1.0
                                                          : 1.0;
     const float margin = reach + 2.0 * PEELRAY_POSITION_SLACK;
@@ -89,7 +89,7 @@ bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayO
         }
     }
     if (options.batch == PEELRAY_FOUR_LAYERS)
-        return peelrayTestFourByFour(place, ray, skip, options, j, end, s, s_out, low, high, margin, centre, o_pixel, d, inv, r, hit);
+        return peelrayTestFourByFour(place, ray, skip, options, j, end, s, s_out, low, high, margin, centre, tolerance, o_pixel, d, inv, r, hit);
     bool found_one = false;
     for (; j < end; j++) {
         PEELRAY_COUNT(z);
@@ -100,7 +100,7 @@ bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayO
         const vec2 slope = unpackSnorm2x16(data.y) * PEELRAY_SLOPE_RANGE;
         const float inv_den = 1.0 / (d.z - (slope.x * d.x + slope.y * d.y));
         const float s_plane = (w + (slope.x * centre.x + slope.y * centre.y) - o.z) * inv_den;
-        if (!peelrayTestSample(place, ray, skip, options, j, w, slope, inv_den, s_plane, s, s_out, low, high, centre, o_pixel, d, inv, r, hit)) continue;
+        if (!peelrayTestSample(place, ray, skip, options, j, w, slope, inv_den, s_plane, s, s_out, low, high, centre, tolerance, o_pixel, d, inv, r, hit)) continue;
         found_one = true;
         if (options.any_hit) break;
     }
@@ -110,6 +110,7 @@ bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayO
 /// One LDI as a ray sees it, and where the ray stands in it.
 struct PeelrayWalk {
     vec3 o, d, inv;    ///< (u, v, w)
+    float tolerance;   ///< of `tolerance` hits, voxels
     ivec2 size;        ///< pixels
     uint first;        ///< its first pixel in the table
     uint level;        ///< of the hierarchy; 0: pixels
@@ -125,6 +126,7 @@ PeelrayWalk peelrayBeginWalk(PeelrayLocal r, PeelrayOptions options, uint axis, 
     walk.o = peelrayToImage(r.o, axis);
     walk.d = peelrayToImage(r.d, axis);
     walk.inv = peelrayToImage(r.inv, axis);
+    walk.tolerance = r.tolerance[axis];
     walk.size = size;
     walk.first = first;
     walk.level_first = first / 2u;
@@ -173,7 +175,7 @@ bool peelrayStep(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOption
         }
     } else {
         const uint list = walk.first + peelrayPixelIndex(uvec2(walk.pixel), uint(walk.size.x));
-        found_one = peelrayTestPixel(place, ray, skip, options, list, walk.pixel, walk.s, s_out, walk.o, walk.d, walk.inv, r, hit);
+        found_one = peelrayTestPixel(place, ray, skip, options, list, walk.pixel, walk.tolerance, walk.s, s_out, walk.o, walk.d, walk.inv, r, hit);
     }
     walk.done = s_out >= min(r.s_end, r.s_best) || (options.any_hit && found_one);
     if (walk.done) return found_one;

@@ -65,7 +65,7 @@ void TracingArguments::check() const {
     if (depth != 16 && depth != 32) fail("a depth of {} bits is not supported: choose 16 or 32 (--depth)", depth);
     if (depth == 16 && traversal == "voxel")
         fail("--traversal voxel has a depth format of its own: use --depth 16 with --traversal two-level or mipmap");
-    if (depth == 16 && hit != "planar" && hit != "tolerance")
+    if (depth == 16 && hit != "planar" && hit != "tolerance" && !(hit == "auto" && builder == "peel"))
         fail("depths of 16 bits are too coarse for --hit {}: use --depth 16 with --hit tolerance or planar", hit);
 }
 

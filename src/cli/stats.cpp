@@ -76,6 +76,13 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
         {"triangles_without_area", cubes.counts.degenerate},
         {"triangles_not_finite", cubes.counts.invalid},
         {"count", cubes.bodies}};
+    if (by_pixel) {
+        json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
+        json["batch"] = choice.layout.batch == Batch::layers ? "layers"
+                        : choice.layout.batch == Batch::rays ? "rays"
+                                                             : "none";
+    }
+    if (choice.hit == HitTest::tolerance) json["tolerance"] = choice.tolerance;
     if (choice.layout.builder != BuilderKind::compute)
         json["routing"] = choice.layout.routing == Routing::geometry ? "geometry" : "draws";
     if (choice.layout.builder == BuilderKind::peel)

@@ -52,6 +52,10 @@ class BuildStage {
 
 /// `count` elements of so many bytes, as many of them as the device binds.
 uint32_t bounded(const BuildState& state, uint64_t count, uint64_t bytes_each);
+/// What is left of `most` after `used`.
+inline uint64_t left_of(uint64_t most, uint64_t used) {
+    return most > used ? most - used : 0;
+}
 /// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; tells whether it did.
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most);
 

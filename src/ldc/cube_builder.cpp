@@ -123,7 +123,14 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
 
 bool CubeBuilder::finish(Commands& commands) {
     std::memcpy(&counts_, counters_readback_.mapped(), sizeof counts_);
-    if (counts_.wrapped) fail("the cube would hold more than 2^32 samples: use a smaller --ldc");
+    if (counts_.wrapped & LDC_FAR_TOLERANCE)
+        fail(
+            "the tolerance is more than {} voxels of a cube, which --traversal voxel cannot hold: choose a smaller "
+            "--tolerance or --ldc, or --traversal two-level",
+            LDC_FARTHEST_BY_VOXEL);
+    if (counts_.wrapped)
+        fail("the cubes would hold more than 2^32 {}: use a smaller --ldc",
+             counts_.wrapped & LDC_WRAPPED_CELLS ? "pixels or cells" : "samples");
     bool grown = rasterizer_->grow(*state_, counts_);
     grown |= order_->grow(*state_, counts_);
     const DeviceInfo& device = state_->device.info();

@@ -94,6 +94,9 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
 
 void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& kept) {
     // Entries are 31-bit numbers of nodes and samples.
+    if (size.cells >= 1ull << 32)
+        fail("the cubes would hold {} pixels or cells, more than their tables can number: use a smaller --ldc",
+             size.cells);
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
         fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
              size.nodes, size.samples);

@@ -11,6 +11,8 @@ namespace peelray {
 
 /// Draws whose fragments become the samples of a body's cube. The front's last stage includes ldc_stream_vertex.glsl,
 /// the fragment shader ldc_stream.glsl, which say what they must do; between them the library's geometry shader routes.
+/// Triangles without area or with corners that are not finite are dropped; unlike those of buffers they are not
+/// counted.
 struct DrawnStream {
     std::string front;                     ///< FRONT.vert, and FRONT.tesc and FRONT.tese with `patch_points`
     std::string fragments;                 ///< FRAGMENTS.frag

@@ -89,8 +89,7 @@ uint32_t PeelRasterizer::record_complexity(Commands& commands, const BuildState&
     targets.width = targets.height = p.side;
     targets.viewport = p.viewport;
     commands.draw(state.device.raster_pass("ldc_peel_count", with_alpha_test(counting_.setup, state.cubes, triangles)),
-                  with_alpha_test(bindings, triangles), p, std::span(&range, 1),
-                  targets);
+                  with_alpha_test(bindings, triangles), p, std::span(&range, 1), targets);
     MaxParams step{0, texels, texels};
     while (step.count > 1) {
         commands.run(state.device.pass("ldc_max"), {{"layer_counts", layer_counts_}}, step,
@@ -134,8 +133,8 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
                                     {"bodies", state.cubes.body_table},
                                     {"depth_map", depth_maps_[(p.level & 1) ^ 1]},
                                     {"id_map", id_maps_[(p.level & 1) ^ 1]}};
-        commands.draw_indirect(peel, with_alpha_test(bindings, triangles), p, {draws_, uint64_t(p.level) * draws * sizeof(DrawArguments), draws},
-                               targets);
+        commands.draw_indirect(peel, with_alpha_test(bindings, triangles), p,
+                               {draws_, uint64_t(p.level) * draws * sizeof(DrawArguments), draws}, targets);
         commands.run_indirect(device.pass("ldc_peel_emit"),
                               {{"positions", triangles.positions},
                                {"triangles", triangles.triangles},
@@ -162,7 +161,8 @@ bool PeelRasterizer::grow(BuildState& state, const LdcCounters& counts) {
                 "compute",
                 layers[i], kMostPasses);
         grown |= layers[i] > passes_[i];
-        passes_[i] = layers[i] + kReserve;
+        // Fewer at once, more only with room for them.
+        passes_[i] = layers[i] > passes_[i] ? layers[i] + kReserve : std::min(passes_[i], layers[i] + kReserve);
     }
     return grown;
 }

@@ -120,9 +120,10 @@ void PixelOrder::record_ranges(Commands& commands, const BuildState& state) {
 
 bool PixelOrder::grow(BuildState& state, const LdcCounters& counts) {
     LdcParams& p = state.params;
-    bool grown = grow_capacity(p.cell_capacity, counts.cells, state.most() / 8 - state.before.cells);
-    grown |=
-        grow_capacity(p.fragment_capacity, counts.fragments, state.most() / sizeof(LdcFragment) - state.before.samples);
+    bool grown = grow_capacity(p.cell_capacity, counts.cells,
+                               std::min(state.most() / 8, left_of(state.most() / 4, state.before.cells)));
+    grown |= grow_capacity(p.fragment_capacity, counts.fragments,
+                           left_of(state.most() / sizeof(LdcFragment), state.before.samples));
     grown |= grow_capacity(p.long_capacity, counts.long_lists, state.most() / 4);
     return grown;
 }

@@ -151,9 +151,10 @@ bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
     const uint64_t most = state.most();
     bool grown = grow_capacity(p.cell_capacity, counts.cells, most / 8);
     // Of these the tables hold those of earlier builds as well.
-    grown |= grow_capacity(p.fragment_capacity, counts.fragments, most / sizeof(LdcFragment) - state.before.samples);
-    grown |= grow_capacity(p.occupied_capacity, counts.occupied, most / 256 - state.before.occupied);
-    grown |= grow_capacity(p.node_capacity, counts.nodes, most / 256 - state.before.nodes);
+    grown |=
+        grow_capacity(p.fragment_capacity, counts.fragments, left_of(most / sizeof(LdcFragment), state.before.samples));
+    grown |= grow_capacity(p.occupied_capacity, counts.occupied, left_of(most / 256, state.before.occupied));
+    grown |= grow_capacity(p.node_capacity, counts.nodes, left_of(most / 256, state.before.nodes));
     grown |= grow_capacity(p.long_capacity, counts.long_lists, most / 4);
     return grown;
 }

@@ -144,7 +144,9 @@ void Renderer::Impl::prepare_images() {
 void Renderer::Impl::prepare_cubes() {
     uint32_t triangles = 0;
     for (const Assembly::Body& body : assembly.bodies) triangles += body.triangles;
-    const CubeChoice choice = choose_automatically(triangles, settings);
+    CubeChoice choice = choose_automatically(triangles, settings);
+    // Whoever traces nothing is not told what a cube cannot hold.
+    if (settings.tracer != Tracer::ldc && choice.hit == HitTest::tolerance) choice.hit = HitTest::planar;
     hit = choice.hit;
     if (cubes && cubes->choice() == choice) return;
     cubes.reset();  // first, so that both never live at once

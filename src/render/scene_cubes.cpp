@@ -24,9 +24,6 @@ uint32_t in_sixteens(float voxels) {
     return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
 }
 
-/// By voxel a sample's depth is stored within two voxels of the voxel that it is filed under.
-constexpr float kFarthestByVoxel = 2;
-
 std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice,
                                   const std::vector<float>& scales) {
     const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice);
@@ -37,12 +34,12 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
         if (choice.hit != HitTest::tolerance) continue;
         bodies.back().tolerance = choice.tolerance / scales[i];
         const float voxel = make_grid(body.lower, body.upper, resolutions[i]).voxel;
-        if (!choice.layout.by_pixel() && bodies.back().tolerance > kFarthestByVoxel * voxel)
+        if (!choice.layout.by_pixel() && bodies.back().tolerance > LDC_FARTHEST_BY_VOXEL * voxel)
             fail(
                 "a tolerance of {} is more than {} voxels of a cube, which --traversal voxel cannot hold: choose at "
                 "most "
                 "{:.3g} (--tolerance), a smaller --ldc, or --traversal two-level",
-                choice.tolerance, kFarthestByVoxel, kFarthestByVoxel * voxel * scales[i]);
+                choice.tolerance, LDC_FARTHEST_BY_VOXEL, LDC_FARTHEST_BY_VOXEL * voxel * scales[i]);
     }
     return bodies;
 }

@@ -290,6 +290,35 @@ TEST_F(BuildersTest, CoplanarFragmentsAreAllThere) {
     expect_same(mesh, compute.body, compute.samples, peel.samples, Sampling::band);
 }
 
+TEST_F(BuildersTest, PassesFollowTheLayersOneByOne) {
+    // As many layers as the first guess has passes, one more, one fewer, built again and again by one builder.
+    const auto stack = [](int layers) {
+        Mesh3 mesh;
+        for (int i = 0; i < 12; i++) {  // what is too much is moved out of the way, into one place each
+            const float z = -0.9f + 0.15f * float(i), x = i < layers ? 0 : -0.9f + 0.15f * float(i);
+            mesh.add({x - 0.05f, -0.05f, z}, {x + 0.05f, -0.05f, z}, {x, 0.05f, z});
+        }
+        mesh.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
+        return mesh;
+    };
+    for (const Routing routing : {Routing::geometry, Routing::draws}) {
+        CubeLayout layout{Traversal::two_level};
+        layout.builder = BuilderKind::peel;
+        layout.routing = routing;
+        const Mesh3 first = stack(8);
+        test::SingleCube cube(device(), commands(), first.positions, first.triangles, first.lower, first.upper, 64,
+                              Sampling::centre, layout);
+        for (const int layers : {8, 9, 8, 7, 10, 11, 12, 11, 12, 10}) {
+            const Mesh3 mesh = stack(layers);
+            commands().upload(cube.triangles.positions, std::span<const glm::vec3>(mesh.positions));
+            cube.build(commands());
+            const Built compute = build(mesh, 64, Sampling::centre, CubeLayout{Traversal::two_level});
+            EXPECT_EQ(cube.counts().complexity, compute.counts.longest) << layers;
+            EXPECT_EQ(cube.counts().fragments, compute.counts.fragments) << layers;
+        }
+    }
+}
+
 TEST_F(BuildersTest, ThousandsOfSliversInOnePixel) {
     // As around a pole: the pixel at the pole sees all of them.
     Mesh3 mesh;

@@ -119,13 +119,16 @@ class InstancesTest : public DeviceTest {
 
     std::vector<FileHit> trace(World& world, const std::vector<Ray>& rays, bool any_hit = false,
                                const std::vector<SurfaceId>& skip = {}) {
+        return trace(world, rays, {HitTest::exact, 0, any_hit}, skip);
+    }
+    std::vector<FileHit> trace(World& world, const std::vector<Ray>& rays, const TraceOptions& options,
+                               const std::vector<SurfaceId>& skip = {}) {
         const Buffer ray_buffer = upload(rays), ids = upload(ids_), hits(device(), "hits", rays.size() * sizeof(Hit)),
                      file_hits(device(), "file hits", rays.size() * sizeof(FileHit));
         Buffer skip_buffer;
         if (!skip.empty()) skip_buffer = upload(skip);
         record_trace(commands(), device(), world.traced(),
-                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hits,
-                     {HitTest::exact, 0, any_hit});
+                     {ray_buffer, skip.empty() ? nullptr : &skip_buffer, uint32_t(rays.size())}, hits, options);
         record_file_hits(commands(), device(), world.instances, ids, hits, uint32_t(rays.size()), file_hits);
         commands().submit();
         return download<FileHit>(file_hits, rays.size());
@@ -270,6 +273,36 @@ TEST_F(InstancesTest, MoveWithTheirTransforms) {
     for (Ray& ray : rays) ray = source.make(test::RayKind::uniform);
     const auto a = trace(*world, rays), b = trace(*again, rays);
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(FileHit)), 0) << "nothing is left of what was before";
+}
+
+TEST_F(InstancesTest, TolerancesAreOfTheWorldUnderScalesAndMirrors) {
+    // A sphere of radius 1 at several sizes: a tolerance of the world is another one in each, and along each axis.
+    const float tolerance = 0.09f;
+    bodies_[0].tolerance = tolerance;
+    const std::vector<Placed> placed = {
+        {0, glm::scale(glm::mat4(1), {3, 1, 1.5f})},
+        {0, glm::scale(glm::translate(glm::mat4(1), {0, 5, 0}), {-2, 1, 1})},
+        {0, glm::scale(glm::rotate(glm::translate(glm::mat4(1), {0, -5, 0}), 0.7f, vec3(0, 0, 1)), {1, 1, 2})}};
+    const auto fuzzy = place(placed, Sampling::centre), exact = place(placed);
+    std::vector<Ray> rays;
+    std::mt19937 random(3);
+    const auto unit = [&] { return float(random() >> 8) / 8388608.0f - 1; };
+    for (int i = 0; i < 20000; i++) {
+        const vec3 to = vec3(0, 5 * float(i % 3 - 1), 0) + 0.6f * vec3(unit(), unit(), unit());
+        const vec3 from = to + 9.0f * glm::normalize(vec3(unit(), unit(), unit()) + 1e-3f);
+        rays.push_back({from, 0, glm::normalize(to - from), 100});
+    }
+    const auto expected = trace(*exact, rays);
+    const auto hits = trace(*fuzzy, rays, {HitTest::tolerance, tolerance});
+    size_t lost = 0, far = 0;
+    for (size_t i = 0; i < rays.size(); i++) {
+        ASSERT_NE(expected[i].triangle, ~0u);
+        lost += hits[i].triangle == ~0u || hits[i].t > expected[i].t + 0.5f;
+        far += hits[i].triangle != ~0u && hits[i].t < expected[i].t - 1.2f;
+    }
+    fmt::print("  {} lost, {} far before their surface of {}\n", lost, far, rays.size());
+    EXPECT_LT(lost, rays.size() / 50);
+    EXPECT_LT(far, rays.size() / 200);
 }
 
 TEST_F(InstancesTest, OfTheSameBodySkipTheirOwnTriangleOnly) {
