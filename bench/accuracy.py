@@ -13,6 +13,8 @@ import subprocess
 import sys
 import tempfile
 
+from scenes import chosen, find
+
 MIRROR = ["--material", "mirror", "--floor"]
 SCENES = [  # name, file or built-in, options
     ("teapots", "builtin:teapots", []),
@@ -56,18 +58,6 @@ STAGES = [  # what the pixels off come from: each row adds to the one before
 ]
 
 
-def find(models, scene):
-    if scene.startswith("builtin:"):
-        return scene
-    path = os.path.join(models, scene)
-    if not os.path.exists(path):  # the sample assets keep variants in folders
-        folder, name = os.path.split(path)
-        for root, _, files in sorted(os.walk(folder)):
-            if name in files:
-                return os.path.join(root, name)
-    return path if os.path.exists(path) else None
-
-
 def compare(program, words, worst=None):
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "compare", words[0], "-o", os.path.join(folder, "r.html"), "--json", os.path.join(folder, "r.json")]
@@ -103,12 +93,7 @@ def rows_of(name, result, size, results, **about):
 
 
 def moving(a, results):
-    for name, scene, options, times in MOVING:
-        path = find(a.models, scene)
-        if a.only not in name or path is None:
-            if path is None:
-                print(f"{name}: {scene} is not here, left out", file=sys.stderr)
-            continue
+    for name, path, options, times in chosen(MOVING, a.models, a.only):
         for time in times:
             words = [path] + options + ["--time", str(time), "--tracers", "ldc,reference", "--hit", "exact,planar"]
             result, error = compare(a.program, words)
@@ -133,12 +118,7 @@ def main():
     print("| scene | triangles | picture | FLIP | HDR-FLIP | SSIM | PSNR dB | pixels off % |\n|---|---:|---|---:|---:|---:|---:|---:|")
     if a.moving:
         moving(a, results)
-    for name, scene, options in [] if a.moving else SCENES:
-        path = find(a.models, scene)
-        if a.only not in name or path is None:
-            if path is None:
-                print(f"{name}: {scene} is not here, left out", file=sys.stderr)
-            continue
+    for name, path, options in chosen([] if a.moving else SCENES, a.models, a.only):
         for index, size in enumerate(a.sizes.split(",")):
             tracers = "cubemap,ldc,reference" if index == 0 else "ldc,reference"
             worst = os.path.join(a.pictures, f"{name.replace(', ', '-').replace(' ', '-')}-{size}.png") if a.pictures else None

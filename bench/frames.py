@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+from scenes import chosen
+
 SCENES = [  # name, file or built-in, options
     ("bunny 7K", "bunny_7k.off", ["--material", "mirror", "--floor"]),
     ("car 47K", "car2.glb", ["--floor"]),
@@ -73,14 +75,7 @@ def main():
     arguments = parser.parse_args()
     rows = []
     print(HEAD, flush=True)
-    for name, scene, options in SCENES:
-        if arguments.only and arguments.only not in name:
-            continue
-        if not scene.startswith("builtin:"):
-            scene = os.path.join(arguments.models, scene)
-            if not os.path.exists(scene):
-                print(f"left out: {name}: there is no {scene}", file=sys.stderr)
-                continue
+    for name, scene, options in chosen(SCENES, arguments.models, arguments.only):
         for size in arguments.sizes.split(","):
             for hit in arguments.hits.split(","):
                 stats, error = render(arguments.program, scene, options + ["--ldc", size, "--hit", hit], arguments.repeat, arguments.device, not arguments.keep)

@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+from scenes import chosen
+
 SCENES = [  # name, file or built-in, options, seconds
     ("tiny, Walk", "tiny.glb", ["--animation", "Walk", "--floor"], 1.0),
     ("walker", "builtin:walker", [], 7.6),
@@ -73,14 +75,7 @@ def main():
     rows = []
     print("| scene | triangles | hits | N | cubes: rebuilt, kept | instances moved | " + " | ".join(PARTS) + " | least to most |")
     print("|---" * 6 + "|---:" * (len(PARTS) + 1) + "|", flush=True)
-    for name, scene, options, seconds in SCENES:
-        if arguments.only and arguments.only not in name:
-            continue
-        if not scene.startswith("builtin:"):
-            scene = os.path.join(arguments.models, scene)
-            if not os.path.exists(scene):
-                print(f"left out: {name}: there is no {scene}", file=sys.stderr)
-                continue
+    for name, scene, options, seconds in chosen(SCENES, arguments.models, arguments.only):
         for fps, suffix in ((30, ""), (3, ", x10")):
             frames = min(arguments.most, max(6, round(seconds * 30) + 1), 1000 if fps == 30 else 40)
             stats, error = sequence(arguments.program, scene, options, frames, fps, arguments.device)

@@ -5,7 +5,7 @@ void main() {
     const LdcPlace place = ldcPlaceOf(routed_id.y);
     const LdcTriangle t = LDC_ROUTED_TRIANGLE;
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
-    ivec2 lo = ivec2(0), hi = ivec2(ldcToLdi(vec3(place.grid.dims), routed_id.x & 3u).xy) - 1;
+    ivec2 lo = ivec2(0), hi = ivec2(peelrayToLdi(vec3(place.grid.dims), routed_id.x & 3u).xy) - 1;
     // Conservative: the device, or the dilation, offers more pixels than are touched.
     if (params.sampling == LDC_CONSERVATIVE && !(ldcBounds(t, uvec2(hi) + 1u, lo, hi) && ldcCovers(t, ldcReach(t), vec2(pixel) + 0.5, LDC_CONSERVATIVE)))
         return;

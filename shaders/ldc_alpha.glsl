@@ -11,9 +11,9 @@ bool ldcPresent(CubeGrid grid, uint id, vec2 place) {
     const uint triangle = id >> 2u, axis = id & 3u;
     if (!alphaMasked(triangle)) return true;
     const uvec3 corners = triangles[triangle];
-    const vec2 a = ldcToLdi((positions[corners.x] - grid.origin) * grid.inv_voxel, axis).xy;
-    const vec2 e = ldcToLdi((positions[corners.y] - grid.origin) * grid.inv_voxel, axis).xy - a;
-    const vec2 f = ldcToLdi((positions[corners.z] - grid.origin) * grid.inv_voxel, axis).xy - a;
+    const vec2 a = peelrayToLdi((positions[corners.x] - grid.origin) * grid.inv_voxel, axis).xy;
+    const vec2 e = peelrayToLdi((positions[corners.y] - grid.origin) * grid.inv_voxel, axis).xy - a;
+    const vec2 f = peelrayToLdi((positions[corners.z] - grid.origin) * grid.inv_voxel, axis).xy - a;
     const vec2 p = place - a;
     const vec2 weights = max(vec2(p.x * f.y - p.y * f.x, e.x * p.y - e.y * p.x) / (e.x * f.y - e.y * f.x), vec2(0));
     return alphaPresent(triangle, weights / max(1.0, weights.x + weights.y));

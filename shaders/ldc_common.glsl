@@ -24,7 +24,6 @@ struct LdcTriangle {
     vec2 slope;
 };
 
-vec3 ldcToLdi(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
 uvec3 ldcFromLdi(uvec3 p, uint axis) { return axis == 0u ? p.zxy : (axis == 1u ? p.yzx : p); }
 
 /// a*b - c*d with one rounding's error, so that the normals of needles keep their direction.
@@ -53,10 +52,10 @@ bool ldcCaptured(vec3 n, uint axis, uint sampling) {
 
 LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint axis) {
     LdcTriangle t;
-    t.a = ldcToLdi((a - grid.origin) * grid.inv_voxel, axis);
-    t.b = ldcToLdi((b - grid.origin) * grid.inv_voxel, axis);
-    t.c = ldcToLdi((c - grid.origin) * grid.inv_voxel, axis);
-    const vec3 n = ldcToLdi(normal, axis);
+    t.a = peelrayToLdi((a - grid.origin) * grid.inv_voxel, axis);
+    t.b = peelrayToLdi((b - grid.origin) * grid.inv_voxel, axis);
+    t.c = peelrayToLdi((c - grid.origin) * grid.inv_voxel, axis);
+    const vec3 n = peelrayToLdi(normal, axis);
     t.slope = clamp(-n.xy / n.z, vec2(-PEELRAY_SLOPE_RANGE), vec2(PEELRAY_SLOPE_RANGE));
     if (n.z < 0.0) {
         const vec3 swapped = t.b;
@@ -136,7 +135,7 @@ uint ldcVoxelInNode(uvec3 voxel) {
 /// A pixel of a body's three LDIs, which lie one behind the other.
 uint ldcPixelOfBody(uvec2 pixel, uint axis, uvec3 dims) {
     const uint before = axis == 0u ? 0u : dims.y * dims.z + (axis == 1u ? 0u : dims.z * dims.x);
-    return before + peelrayPixelIndex(pixel, uint(ldcToLdi(vec3(dims), axis).x));
+    return before + peelrayPixelIndex(pixel, uint(peelrayToLdi(vec3(dims), axis).x));
 }
 /// What a half float holds of a number in [0, 1], rounded to nearest even. In integers: compilers take packing and unpacking
 /// one after the other for nothing.
@@ -188,7 +187,7 @@ uint ldcGrowBox(uvec2 mask, uint index) {
 
 /// The sample of a triangle in a voxel, as the traversal reads it (see peelrayTrace); the `last` bit is still 0.
 uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling) {
-    const vec3 corner = ldcToLdi(vec3(voxel), axis);
+    const vec3 corner = peelrayToLdi(vec3(voxel), axis);
     const vec2 centre = corner.xy + 0.5;
     const float w = ldcDepth(t, centre) - corner.z;
     uint coverage = 0u;

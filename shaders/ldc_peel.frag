@@ -15,7 +15,7 @@ layout(location = 1) out uvec2 color_id;
 
 void main() {
     const uint axis = routed_id.x & 3u;
-    const vec3 dims = ldcToLdi(vec3(bodies[routed_id.y].grid.dims), axis);
+    const vec3 dims = peelrayToLdi(vec3(bodies[routed_id.y].grid.dims), axis);
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     if (any(greaterThanEqual(vec2(pixel), dims.xy)) || !routedPresent(pixel)) discard;
     const LdcTriangle t = LDC_ROUTED_TRIANGLE;

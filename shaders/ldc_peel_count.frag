@@ -11,6 +11,6 @@ LDC_ROUTED(in)
 void main() {
     const uint axis = routed_id.x & 3u;
     const uvec2 pixel = uvec2(gl_FragCoord.xy);
-    if (any(greaterThanEqual(vec2(pixel), ldcToLdi(vec3(bodies[routed_id.y].grid.dims), axis).xy)) || !routedPresent(ivec2(pixel))) return;
+    if (any(greaterThanEqual(vec2(pixel), peelrayToLdi(vec3(bodies[routed_id.y].grid.dims), axis).xy)) || !routedPresent(ivec2(pixel))) return;
     atomicAdd(layer_counts[(axis * params.side + pixel.y) * params.side + pixel.x], 1u);
 }

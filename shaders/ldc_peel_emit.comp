@@ -13,6 +13,7 @@ BUFFER(writeonly, 5, LdcFragment, fragments)
 IMAGE(6, texture2DArray, depth_map)
 IMAGE(7, utexture2DArray, id_map)
 #include "ldc_emit.glsl"
+#include "ldc_projected.glsl"
 #include "ldc_peel.glsl"
 
 void main() {
@@ -23,11 +24,7 @@ void main() {
     uint id = LDC_NOTHING, count = 0u;
     if (axis < 3u) id = texelFetch(id_map, ivec3(pixel, axis), 0).y;
     LdcTriangle t;
-    if (id != LDC_NOTHING && params.by_pixel == 0u) {
-        const uvec3 corners = triangles[id >> 2u];
-        const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
-        t = ldcProject(grid, a, b, c, ldcNormal(a, b, c, grid.inv_voxel), axis);
-    }
+    if (id != LDC_NOTHING && params.by_pixel == 0u) t = ldcProjected(grid, id);
     if (id != LDC_NOTHING) count = params.by_pixel == 0u ? ldcEmitPixel(t, pixel, id, place, false, 0u) : 1u;
     const uint position = ldcReserve(count);
     if (id == LDC_NOTHING) return;

@@ -1,5 +1,7 @@
 // Writing a sample of the by-pixel order to its final place, counted from the build's first sample.
 // STREAM: fragments of drawn streams, whose triangles are gone.
+#include "ldc_projected.glsl"
+
 void placePixelSample(uint at, uint fragment) {
     const LdcFragment f = fragments[fragment];
     if (STREAM) {
@@ -10,9 +12,7 @@ void placePixelSample(uint at, uint fragment) {
         return;
     }
     const CubeGrid grid = bodies[ldcBodyOfCell(params.first_cell + f.cell)].grid;
-    const uvec3 corners = triangles[f.id >> 2u];
-    const LdcTriangle t = ldcProject(grid, positions[corners.x], positions[corners.y], positions[corners.z],
-                                     ldcNormal(positions[corners.x], positions[corners.y], positions[corners.z], grid.inv_voxel), f.id & 3u);
-    samples[params.first_sample + at] = uvec2(f.local, packSnorm2x16(t.slope / PEELRAY_SLOPE_RANGE));
+    const vec2 slope = ldcProjected(grid, f.id).slope;
+    samples[params.first_sample + at] = uvec2(f.local, packSnorm2x16(slope / PEELRAY_SLOPE_RANGE));
     sample_ids[params.first_sample + at] = f.id;
 }

@@ -17,6 +17,6 @@ bool ldcImageOf(uint pixel, out LdcImage image) {
     const uvec3 sizes = uvec3(grid.dims.y * grid.dims.z, grid.dims.z * grid.dims.x, grid.dims.x * grid.dims.y);
     const uint axis = inside < sizes.x ? 0u : (inside < sizes.x + sizes.y ? 1u : 2u);
     first += axis == 0u ? 0u : (axis == 1u ? sizes.x : sizes.x + sizes.y);
-    image = LdcImage(first, uvec3(ldcToLdi(vec3(grid.dims), axis)).xy, bodies[body].tolerance * grid.inv_voxel);
+    image = LdcImage(first, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, bodies[body].tolerance * grid.inv_voxel);
     return inside < sizes.x + sizes.y + sizes.z;
 }

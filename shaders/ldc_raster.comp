@@ -46,7 +46,7 @@ void main() {
         ivec2 lo = ivec2(0), hi = ivec2(-1);
         if (captured) {
             t = ldcProject(grid, a, b, c, normal, axis);
-            const uvec3 dims = uvec3(ldcToLdi(vec3(grid.dims), axis));
+            const uvec3 dims = uvec3(peelrayToLdi(vec3(grid.dims), axis));
             captured = ldcBounds(t, dims.xy, lo, hi);
             const ivec2 size = hi - lo + 1;
             if (captured && uint(size.x) * uint(size.y) > LDC_SMALL_PIXELS) {

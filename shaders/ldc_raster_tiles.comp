@@ -16,7 +16,7 @@ BUFFER(readonly, 6, LdcBody, bodies)
 #include "base_color_buffers.glsl"
 #include "ldc_alpha.glsl"
 #include "ldc_emit.glsl"
-#include "ldc_big.glsl"
+#include "ldc_projected.glsl"
 
 void main() {
     const uint tile_count = min(counters[0].tiles, params.tile_capacity);
@@ -25,10 +25,10 @@ void main() {
     const uint id = tile.x;
     const LdcPlace place = ldcPlaceOf(ldcBodyOfTriangle(id >> 2u));
     const CubeGrid grid = place.grid;
-    const LdcTriangle t = bigTriangle(grid, id);
+    const LdcTriangle t = ldcProjected(grid, id);
     const vec3 reach = ldcReach(t);
     ivec2 lo, hi;
-    ldcBounds(t, uvec3(ldcToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
+    ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
     const ivec2 corner = ivec2(tile.y & 0xffffu, tile.y >> 16u) * 16;
     uint count = 0u, covered = 0u;
     for (uint k = 0u; k < 4u; k++) {

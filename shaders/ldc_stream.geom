@@ -28,7 +28,7 @@ void main() {
             ldcHandOn(t, stream_id[0] << 2u | axis, body, normal);
             routed_data0 = stream_data0[k];
             routed_data1 = stream_data1[k];
-            gl_Position = ldcClip(ldcToLdi((gl_in[k].gl_Position.xyz - grid.origin) * grid.inv_voxel, axis).xy);
+            gl_Position = ldcClip(peelrayToLdi((gl_in[k].gl_Position.xyz - grid.origin) * grid.inv_voxel, axis).xy);
             EmitVertex();
         }
         EndPrimitive();

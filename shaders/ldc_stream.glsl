@@ -24,7 +24,7 @@ void ldcCapture(vec3 normal, vec4 color) {
     const uint axis = routed_id.x & 3u;
     const uvec3 dims = bodies[routed_id.y].grid.dims;
     const uvec2 pixel = uvec2(gl_FragCoord.xy);
-    if (any(greaterThanEqual(vec2(pixel), ldcToLdi(vec3(dims), axis).xy))) return;
+    if (any(greaterThanEqual(vec2(pixel), peelrayToLdi(vec3(dims), axis).xy))) return;
     const uint position = atomicAdd(counters[0].fragments, 1u);
     if (position == 0xffffffffu) atomicOr(counters[0].wrapped, LDC_WRAPPED_FRAGMENTS);
     if (position >= params.fragment_capacity) return;

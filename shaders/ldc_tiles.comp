@@ -12,17 +12,17 @@ BUFFER(writeonly, 4, uvec2, tiles)
 BUFFER(readonly, 5, LdcBody, bodies)
 #include "ldc_bodies.glsl"
 #include "ldc_common.glsl"
-#include "ldc_big.glsl"
+#include "ldc_projected.glsl"
 
 void main() {
     const uint count = min(counters[0].big, params.big_capacity);
     if (GROUP_INDEX >= count) return;
     const uint id = big_triangles[GROUP_INDEX];
     const CubeGrid grid = bodies[ldcBodyOfTriangle(id >> 2u)].grid;
-    const LdcTriangle t = bigTriangle(grid, id);
+    const LdcTriangle t = ldcProjected(grid, id);
     const vec3 reach = ldcReach(t);
     ivec2 lo, hi;
-    ldcBounds(t, uvec3(ldcToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
+    ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
     const uvec2 first = uvec2(lo) >> 4u, size = (uvec2(hi) >> 4u) - first + 1u;
     for (uint j = gl_LocalInvocationIndex; j < size.x * size.y; j += gl_WorkGroupSize.x) {
         const uvec2 tile = first + uvec2(j % size.x, j / size.x);

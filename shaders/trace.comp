@@ -2,36 +2,13 @@
 #version 460
 #include "common.glsl"
 #include "params.h"
-layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool any_hit = false;
-layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
-layout(constant_id = 2) const bool precise_edges = false;
-layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
-layout(constant_id = 4) const uint batch = 0u;      // PEELRAY_ONE, ...
-layout(constant_id = 5) const bool masked = false;  // the scene has masked materials
-PARAMS(TraceParams)
-#include "cube_fetch.glsl"
-BUFFER(readonly, 10, Ray, rays)
-BUFFER(readonly, 11, SurfaceId, skip)
-BUFFER(readonly, 12, uint, queue)
-BUFFER(writeonly, 13, Hit, hits)
-#define BASE_COLOR_FIRST_BINDING 14
-#include "base_color_buffers.glsl"
-#include "alpha_test.glsl"
-#define PEELRAY_PRECISE precise_edges
-#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
-#include "peelray/peelray.glsl"
+#include "trace_queue.glsl"
+layout(constant_id = 5) const uint batch = 0u;  // PEELRAY_ONE, ...
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    const uint count = params.counted != 0u ? min(params.count, queue[params.counter]) : params.count;
-    if (i >= count) return;
+    if (i >= queueLength()) return;
     const Ray ray = rays[i];
-    uvec2 own = uvec2(PEELRAY_MISS);
-    if (params.skips != 0u) own = uvec2(skip[i].instance, skip[i].triangle);
     const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch);
-    const PeelrayHit hit = peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), own, options);
-    vec2 uv = hit.uv;
-    if (hit_test != PEELRAY_EXACT && hit.triangle != PEELRAY_MISS) uv = cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction);
-    hits[i] = Hit(hit.t, hit.triangle, hit.instance, uv.x, uv.y);
+    queueStore(i, ray, peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), queueSkip(i), options));
 }

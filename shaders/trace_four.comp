@@ -2,28 +2,11 @@
 #version 460
 #include "common.glsl"
 #include "params.h"
-layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool any_hit = false;
-layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
-layout(constant_id = 2) const bool precise_edges = false;
-layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
-layout(constant_id = 4) const bool masked = false;  // the scene has masked materials
-PARAMS(TraceParams)
-#include "cube_fetch.glsl"
-BUFFER(readonly, 10, Ray, rays)
-BUFFER(readonly, 11, SurfaceId, skip)
-BUFFER(readonly, 12, uint, queue)
-BUFFER(writeonly, 13, Hit, hits)
-#define BASE_COLOR_FIRST_BINDING 14
-#include "base_color_buffers.glsl"
-#include "alpha_test.glsl"
-#define PEELRAY_PRECISE precise_edges
-#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
-#include "peelray/peelray.glsl"
+#include "trace_queue.glsl"
 
 void main() {
     const uint first = GLOBAL_INDEX * 4u;
-    const uint count = params.counted != 0u ? min(params.count, queue[params.counter]) : params.count;
+    const uint count = queueLength();
     if (first >= count) return;
     PeelrayRay own_rays[4];
     uvec2 own[4];
@@ -32,8 +15,7 @@ void main() {
         const uint i = min(first + uint(k), count - 1u);
         const Ray ray = rays[i];
         own_rays[k] = PeelrayRay(ray.origin, ray.tmin, ray.direction, first + uint(k) < count ? ray.tmax : ray.tmin);
-        own[k] = uvec2(PEELRAY_MISS);
-        if (params.skips != 0u) own[k] = uvec2(skip[i].instance, skip[i].triangle);
+        own[k] = queueSkip(i);
     }
     const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE);
     PeelrayHit found[4];
@@ -41,9 +23,6 @@ void main() {
     for (int k = 0; k < 4; k++) {
         const uint i = first + uint(k);
         if (i >= count) return;
-        vec2 uv = found[k].uv;
-        if (hit_test != PEELRAY_EXACT && found[k].triangle != PEELRAY_MISS)
-            uv = cubeWeights(found[k].instance, found[k].triangle, rays[i].origin + found[k].t * rays[i].direction);
-        hits[i] = Hit(found[k].t, found[k].triangle, found[k].instance, uv.x, uv.y);
+        queueStore(i, rays[i], found[k]);
     }
 }

@@ -19,17 +19,18 @@ struct CubeGrid {
     float inv_voxel;  ///< 1 / voxel
 };
 
-/// A cube placed in the world: p in the world is M * (p - corner) from the lower corner of the cube's first voxel, in the units
-/// of the body's space; x, y and z are the rows of M. In blocks of 16 bytes, which GPUs load at once.
+/// A cube placed in the world: p in the world is M * (p - corner) from the lower corner of the cube's first voxel, in
+/// the units of the body's space; x, y and z are the rows of M. In blocks of 16 bytes, which GPUs load at once.
 struct PeelrayInstance {
     vec3 x;
-    float voxel;      ///< as in CubeGrid
+    float voxel;  ///< as in CubeGrid
     vec3 y;
     float inv_voxel;
     vec3 z;
-    uint tops;        ///< the grid's dims in 16 voxels: 10 bits each
+    uint tops;  ///< the grid's dims in 16 voxels: 10 bits each
     vec3 corner;
-    uint first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel order)
+    uint first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel
+                      ///< order)
     vec3 origin;      ///< as in CubeGrid
     uint moved;       ///< 0: M is the identity and corner the grid's origin
 };
@@ -42,14 +43,26 @@ struct PeelrayBox {
     uint unused;
 };
 
-/// Where the boxes of the hierarchy lie: box i of a level holds boxes 8 i to 8 i + 7 of the level below. The highest level has
-/// at most 8 boxes; each level is filled up to a multiple of 8.
+/// Where the boxes of the hierarchy lie: box i of a level holds boxes 8 i to 8 i + 7 of the level below. The highest
+/// level has at most 8 boxes; each level is filled up to a multiple of 8.
 #define PEELRAY_TREE_LEVELS 8
 struct PeelrayTree {
     uint instances;
     uint levels;  ///< at least 1
     uint first[PEELRAY_TREE_LEVELS];
 };
+
+// Hit tests.
+#define PEELRAY_EXACT 0u      // the triangles themselves
+#define PEELRAY_PLANAR 1u     // the samples' planes
+#define PEELRAY_TOLERANCE 2u  // the samples' depths, within a distance
+// Traversals, each with the order of the samples that it reads.
+#define PEELRAY_VOXELS 0u     // by voxel
+#define PEELRAY_TWO_LEVEL 1u  // by pixel, with one coarse level
+#define PEELRAY_MIPMAP 2u     // by pixel, with a min/max pyramid
+// What a ray does at a time, by pixel (the paper, section 4).
+#define PEELRAY_ONE 0u
+#define PEELRAY_FOUR_LAYERS 1u
 
 #ifdef __cplusplus
 static_assert(sizeof(CubeGrid) == 32);

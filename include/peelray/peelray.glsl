@@ -37,19 +37,6 @@
 
 const uint PEELRAY_MISS = 0xffffffffu;
 
-// Hit tests.
-const uint PEELRAY_EXACT = 0u;      ///< the triangles themselves
-const uint PEELRAY_PLANAR = 1u;     ///< the samples' planes
-const uint PEELRAY_TOLERANCE = 2u;  ///< the samples' depths, within a distance
-// Traversals, each with the order of the samples that it reads.
-const uint PEELRAY_VOXELS = 0u;     ///< by voxel
-const uint PEELRAY_TWO_LEVEL = 1u;  ///< by pixel, with one coarse level
-const uint PEELRAY_MIPMAP = 2u;     ///< by pixel, with a min/max pyramid
-
-// What is done at a time, by pixel (the paper, section 4).
-const uint PEELRAY_ONE = 0u;
-const uint PEELRAY_FOUR_LAYERS = 1u;
-
 /// How rays are traced. Constants, but for tolerance and block.
 struct PeelrayOptions {
     bool any_hit;     ///< some hit instead of the nearest
@@ -187,7 +174,6 @@ bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv,
 }
 
 /// The LDI's view of a vector: (u, v, w).
-vec3 peelrayToImage(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
 
 /// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
 /// valid (peelrayTrace), `skip` a triangle that does not count.
@@ -251,14 +237,14 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             const uint axis = data.y >> 28u & 3u;
             const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
             const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
-            const vec3 dr = peelrayToImage(r.d, axis), or = peelrayToImage(o_cell, axis);
+            const vec3 dr = peelrayToLdi(r.d, axis), or = peelrayToLdi(o_cell, axis);
             const vec2 centre = or.xy - 0.5;
             const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
             const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
             const vec2 at = centre + s_plane * dr.xy;
             if (options.hit == PEELRAY_TOLERANCE) {
                 float s_near;
-                if (peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToImage(r.inv, axis), w, s_near)) {
+                if (peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToLdi(r.inv, axis), w, s_near)) {
                     const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
                     if (id != skip) {
                         r.s_best = s_near;

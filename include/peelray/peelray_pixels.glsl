@@ -123,9 +123,9 @@ struct PeelrayWalk {
 
 PeelrayWalk peelrayBeginWalk(PeelrayLocal r, PeelrayOptions options, uint axis, ivec2 size, uint first) {
     PeelrayWalk walk;
-    walk.o = peelrayToImage(r.o, axis);
-    walk.d = peelrayToImage(r.d, axis);
-    walk.inv = peelrayToImage(r.inv, axis);
+    walk.o = peelrayToLdi(r.o, axis);
+    walk.d = peelrayToLdi(r.d, axis);
+    walk.inv = peelrayToLdi(r.inv, axis);
     walk.tolerance = r.tolerance[axis];
     walk.size = size;
     walk.first = first;
@@ -213,7 +213,7 @@ void peelrayTracePixels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     uint first = place.first_cell;
     bool found_one = false;
     for (uint axis = 0u; axis < 3u; axis++) {
-        const ivec2 size = ivec3(peelrayToImage(vec3(r.last + 1), axis)).xy;
+        const ivec2 size = ivec3(peelrayToLdi(vec3(r.last + 1), axis)).xy;
         PeelrayWalk walk = peelrayBeginWalk(r, options, axis, size, first);
         while (!walk.done)
             if (peelrayStep(place, ray, skip, options, walk, r, hit)) found_one = true;
@@ -265,7 +265,7 @@ void peelrayTraceFour(uint instances, PeelrayRay rays[4], uvec2 skips[4], Peelra
         uint first = place.first_cell;
         for (uint axis = 0u; axis < 3u; axis++) {
             const uvec3 dims = 16u * (uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u);
-            const ivec2 size = ivec3(peelrayToImage(vec3(dims), axis)).xy;
+            const ivec2 size = ivec3(peelrayToLdi(vec3(dims), axis)).xy;
             PeelrayWalk walks[4];
             PEELRAY_EACH_OF_FOUR(walks[k].done = true;
                                  if (enters[k] && !(options.any_hit && found[k])) walks[k] = peelrayBeginWalk(r[k], options, axis, size, first);)

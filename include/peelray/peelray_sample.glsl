@@ -11,6 +11,9 @@ const float PEELRAY_SLOPE_RANGE = 1.25;
 /// Half-width of a sample's footprint for `planar` hits, in pixels.
 const float PEELRAY_FOOTPRINT = 0.7;
 
+/// (x, y, z) as (u, v, w) of the LDI along `axis`, which is its w.
+vec3 peelrayToLdi(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
+
 /// Place of a pixel in an LDI of the by-pixel order, whose rows have `width` pixels (a multiple of 16): 8x8 tiles, for rays walk
 /// both ways.
 uint peelrayPixelIndex(uvec2 pixel, uint width) {

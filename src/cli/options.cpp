@@ -45,6 +45,16 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& val
     return app.add_option(name, value, help)->check(check)->type_name(known)->capture_default_str();
 }
 
+CLI::Option* add_block(CLI::App& app, glm::uvec2& block, const std::string& help) {
+    return add_parsed(app, "--block", block, parse_block, "a number of pixels such as 8 or 8x4", help)
+        ->type_name("N|NxM")
+        ->default_str("8");
+}
+
+CLI::Option* add_routing(CLI::App& app, std::string& routing, const std::string& help) {
+    return add_choice(app, "--routing", routing, {"geometry", "draws"}, help);
+}
+
 void add_device_options(CLI::App& app, DeviceArguments& device) {
     app.add_option("--device", device.device,
                    "by number or part of its name, see 'peelray devices'; default: the fastest kind there is")
@@ -77,8 +87,8 @@ void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
         "who rasterises the layered depth cubes: compute shaders; the graphics pipeline in one pass (abuffer) or a "
         "pass per layer (peel, as in the paper); auto: compute")
         ->group(group);
-    add_choice(app, "--routing", tracing.routing, {"geometry", "draws"},
-               "how the graphics pipeline sends triangles to the three images: a geometry shader, or three draws")
+    add_routing(app, tracing.routing,
+                "how the graphics pipeline sends triangles to the three images: a geometry shader, or three draws")
         ->group(group);
     add_number<uint32_t>(app, "--depth", tracing.depth,
                          "bits of the samples' depths of --traversal two-level and mipmap: 32, or 16 as in the paper")
@@ -93,11 +103,7 @@ void add_tracing_options(CLI::App& app, TracingArguments& tracing) {
         "how rays walk through a cube: all of it at once by voxels, or one image after the other over blocks of pixels "
         "(two-level, as in the paper) or a full pyramid (mipmap)")
         ->group(group);
-    add_parsed(app, "--block", tracing.block, parse_block, "a number of pixels such as 8 or 8x4",
-               "pixels per block of --traversal two-level, 2 to 32 a side")
-        ->type_name("N|NxM")
-        ->default_str("8")
-        ->group(group);
+    add_block(app, tracing.block, "pixels per block of --traversal two-level, 2 to 32 a side")->group(group);
 }
 
 }  // namespace
@@ -385,14 +391,8 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         ->type_name("LIST")
         ->default_str("512,1024")
         ->group(group);
-    add_parsed(app, "--block", a.block, parse_block, "a number of pixels such as 8 or 8x4",
-               "pixels per block of two-level")
-        ->type_name("N|NxM")
-        ->default_str("8")
-        ->group(group);
-    add_choice(app, "--routing", a.routing, {"geometry", "draws"},
-               "how peel and abuffer send triangles to the three images")
-        ->group(group);
+    add_block(app, a.block, "pixels per block of two-level")->group(group);
+    add_routing(app, a.routing, "how peel and abuffer send triangles to the three images")->group(group);
     add_number<double>(app, "--tolerance", a.tolerance,
                        "distance of a hit of tolerance, world units; default: 0.001 if the object were one unit long")
         ->group(group);

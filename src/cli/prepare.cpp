@@ -10,6 +10,14 @@
 namespace peelray {
 namespace {
 
+/// The value that the command line calls `name`; the first for "auto".
+template <typename Value>
+Value named(const std::string& name, std::initializer_list<Value> values) {
+    for (const Value value : values)
+        if (name == name_of(value)) return value;
+    return *values.begin();
+}
+
 Environment choose_environment(const PictureArguments& a, const Scene& scene) {
     if (!a.env.empty()) {
         const Image image = read_hdr(a.env);
@@ -135,22 +143,18 @@ void check_ranges(const PictureArguments& a) {
 
 void choose_hit(RenderSettings& settings, const std::string& hit) {
     settings.hit_auto = hit == "auto";
-    settings.hit = hit == "planar" ? HitTest::planar : hit == "tolerance" ? HitTest::tolerance : HitTest::exact;
+    settings.hit = named(hit, {HitTest::exact, HitTest::planar, HitTest::tolerance});
 }
 
 void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
     CubeLayout& layout = settings.layout;
     settings.tolerance = float(tracing.tolerance);
-    layout.traversal = tracing.traversal == "two-level" ? Traversal::two_level
-                       : tracing.traversal == "mipmap"  ? Traversal::mipmap
-                                                        : Traversal::voxel;
+    layout.traversal = named(tracing.traversal, {Traversal::voxel, Traversal::two_level, Traversal::mipmap});
     layout.block = tracing.block;
-    layout.batch = tracing.batch == "layers" ? Batch::layers : tracing.batch == "rays" ? Batch::rays : Batch::none;
+    layout.batch = named(tracing.batch, {Batch::none, Batch::layers, Batch::rays});
     layout.half_depth = tracing.depth == 16;
-    layout.builder = tracing.builder == "peel"      ? BuilderKind::peel
-                     : tracing.builder == "abuffer" ? BuilderKind::abuffer
-                                                    : BuilderKind::compute;
-    layout.routing = tracing.routing == "draws" ? Routing::draws : Routing::geometry;
+    layout.builder = named(tracing.builder, {BuilderKind::compute, BuilderKind::abuffer, BuilderKind::peel});
+    layout.routing = named(tracing.routing, {Routing::geometry, Routing::draws});
 }
 
 RenderSettings settings_of(const PictureArguments& a) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "image/image.h"
+#include "ldc/cubes.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -51,12 +52,8 @@ void TracingArguments::check() const {
         fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
     if (!(tolerance > 0) || !std::isfinite(tolerance))
         fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
-    if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
-        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
-    if (builder == "peel" && hit == "exact")
-        fail(
-            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
-            "--builder abuffer or compute");
+    check_block(block);
+    if (builder == "peel" && hit == "exact") check_captures(BuilderKind::peel, Sampling::conservative);
     if (batch != "none" && traversal == "voxel")
         fail(
             "--traversal voxel takes one sample and one ray at a time: use --batch {} with --traversal two-level or "

@@ -78,13 +78,10 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
         {"count", cubes.bodies}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
-        json["batch"] = choice.layout.batch == Batch::layers ? "layers"
-                        : choice.layout.batch == Batch::rays ? "rays"
-                                                             : "none";
+        json["batch"] = name_of(choice.layout.batch);
     }
     if (choice.hit == HitTest::tolerance) json["tolerance"] = choice.tolerance;
-    if (choice.layout.builder != BuilderKind::compute)
-        json["routing"] = choice.layout.routing == Routing::geometry ? "geometry" : "draws";
+    if (choice.layout.builder != BuilderKind::compute) json["routing"] = name_of(choice.layout.routing);
     if (choice.layout.builder == BuilderKind::peel)
         json["peeling"] = {{"depth_complexity", cubes.counts.complexity}, {"passes", cubes.counts.passes}};
     for (size_t i = 0; i < std::min<size_t>(bodies.size(), 64); i++)

@@ -160,10 +160,6 @@ const Pass& Device::pass(std::string_view shader, const std::vector<uint32_t>& c
     return *entry;
 }
 
-const RasterPass& Device::raster_pass(std::string_view shader) {
-    return raster_pass(shader, RasterSetup());
-}
-
 const RasterPass& Device::raster_pass(std::string_view shader, const RasterSetup& setup) {
     auto& entry = state_->raster_passes[{std::string(shader), setup}];
     if (!entry) entry = std::make_unique<RasterPass>(*this, state_->cache->handle(), shader, setup);

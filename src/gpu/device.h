@@ -65,9 +65,6 @@ class Device {
     /// specialisation constants 0, 1, …; each combination is a pass of its own.
     const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
 
-    /// The rasterising pass of NAME.vert and NAME.frag with one R32G32_UINT target and a D32 depth buffer (greater is
-    /// nearer).
-    const RasterPass& raster_pass(std::string_view shader);
     /// The rasterising pass whose fragment shader is NAME.frag, made once and kept for each setup.
     const RasterPass& raster_pass(std::string_view shader, const RasterSetup& setup);
 

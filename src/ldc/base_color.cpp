@@ -10,12 +10,16 @@ std::vector<Binding> base_color_bindings(const BaseColorBuffers& b) {
             {"colors", b.colors},       {"triangle_materials", b.triangle_materials}};
 }
 
-std::vector<Binding> alpha_bindings(const TriangleBuffers& triangles) {
-    if (triangles.masks) return base_color_bindings(*triangles.masks);
-    std::vector<Binding> bindings;
+std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
+    std::vector<Binding> all(bindings.begin(), bindings.end());
+    if (triangles.masks) {
+        const std::vector<Binding> masks = base_color_bindings(*triangles.masks);
+        all.insert(all.end(), masks.begin(), masks.end());
+        return all;
+    }
     for (const char* name : {"materials", "texture_infos", "texels", "uvs", "colors", "triangle_materials"})
-        bindings.push_back({name, triangles.positions});
-    return bindings;
+        all.push_back({name, triangles.positions});
+    return all;
 }
 
 }  // namespace peelray

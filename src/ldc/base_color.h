@@ -1,6 +1,7 @@
 // What tells the base colour of triangles and its alpha, on the device.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gpu/commands.h"
@@ -26,7 +27,8 @@ struct BaseColorBuffers {
 
 std::vector<Binding> base_color_bindings(const BaseColorBuffers& buffers);
 
-/// The same for a pass that tests the alpha of masked triangles. Without any it reads none of them: positions stand in.
-std::vector<Binding> alpha_bindings(const TriangleBuffers& triangles);
+/// `bindings`, and the same for a pass that tests the alpha of masked triangles. Without any it reads none of them:
+/// positions stand in.
+std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles);
 
 }  // namespace peelray

@@ -30,6 +30,11 @@ struct BuildState {
 
     /// Bytes that the device binds at once.
     uint64_t most() const { return device.limits().maxStorageBufferRange; }
+    /// Are triangles tested for holes as they are rasterised? Conservative samples keep what may be one: a hit decides
+    /// at its own place.
+    bool tests_alpha(const TriangleBuffers& triangles) const {
+        return triangles.masks && cubes.sampling() != Sampling::conservative;
+    }
     /// Counts the workgroups of the indirect passes anew.
     void record_groups(Commands& commands) const;
 };

@@ -15,12 +15,11 @@ void ComputeRasterizer::allocate(Commands&, BuildState& state) {
 void ComputeRasterizer::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     Device& device = state.device;
     const LdcParams& p = state.params;
-    // Conservative samples keep what may be a hole: a hit decides at its own place.
-    const bool masked = triangles.masks && state.cubes.sampling() != Sampling::conservative;
-    std::vector<Binding> bindings = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
-                                     {"counters", state.counters},       {"node_masks", state.node_masks},
-                                     {"fragments", state.fragments},     {"bodies", state.cubes.body_table}};
-    for (const Binding& binding : alpha_bindings(triangles)) bindings.push_back(binding);
+    const bool masked = state.tests_alpha(triangles);
+    const Binding geometry[] = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
+                                {"counters", state.counters},       {"node_masks", state.node_masks},
+                                {"fragments", state.fragments},     {"bodies", state.cubes.body_table}};
+    std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
     bindings.push_back({"big_triangles", big_triangles_});
     commands.run(device.pass("ldc_raster", {masked}), bindings, p, groups_for(p.triangles, 64));
     state.record_groups(commands);

@@ -50,18 +50,6 @@ std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) 
     return nullptr;
 }
 
-uint32_t sampling_code(Sampling sampling) {
-    switch (sampling) {
-        case Sampling::conservative:
-            return LDC_CONSERVATIVE;
-        case Sampling::band:
-            return LDC_BAND;
-        case Sampling::centre:
-            return LDC_CENTRE;
-    }
-    return LDC_CONSERVATIVE;
-}
-
 }  // namespace
 
 CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
@@ -80,7 +68,7 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
     p.first_occupied = uint32_t(before.occupied);
     p.first_node = uint32_t(before.nodes);
     p.first_sample = uint32_t(before.samples);
-    p.sampling = sampling_code(cubes.sampling());
+    p.sampling = uint32_t(cubes.sampling());
     p.by_pixel = cubes.layout().by_pixel() ? (cubes.layout().half_depth ? 2 : 1) : 0;
     state_->counters = Buffer(device, "build counters", sizeof(LdcCounters));
     state_->groups = Buffer(device, "build workgroups", LDC_GROUPS * 12);

@@ -46,6 +46,22 @@ const char* name_of(BuilderKind builder) {
     return "";
 }
 
+const char* name_of(Routing routing) {
+    return routing == Routing::draws ? "draws" : "geometry";
+}
+
+const char* name_of(Batch batch) {
+    switch (batch) {
+        case Batch::none:
+            return "none";
+        case Batch::layers:
+            return "layers";
+        case Batch::rays:
+            return "rays";
+    }
+    return "";
+}
+
 uint32_t round_resolution(uint32_t resolution) {
     if (resolution < 16 || resolution > 2048)
         fail("the LDI resolution {} is out of range: choose 16 to 2048 (--ldc)", resolution);
@@ -65,6 +81,18 @@ TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vert
     commands.upload(triangles, indices);
 }
 
+void check_captures(BuilderKind builder, Sampling sampling) {
+    if (builder == BuilderKind::peel && sampling == Sampling::conservative)
+        fail(
+            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
+            "--builder abuffer or compute");
+}
+
+void check_block(const glm::uvec2& block) {
+    if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
+        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
+}
+
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution) {
     return ldcMakeGrid(lower, upper, round_resolution(resolution));
 }
@@ -72,9 +100,7 @@ CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t reso
 Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, const CubeLayout& layout)
     : device_(device), bodies_(std::move(bodies)), sampling_(sampling), layout_(layout) {
     assert(!bodies_.empty());
-    if (layout.block.x < 2 || layout.block.y < 2 || layout.block.x > 32 || layout.block.y > 32)
-        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", layout.block.x,
-             layout.block.y);
+    check_block(layout.block);
     Commands commands(device);
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
@@ -123,14 +149,6 @@ uint32_t Cubes::pyramid_levels() const {
 
 std::vector<LdcBody> Cubes::download_bodies(Commands& commands) const {
     return commands.download<LdcBody>(body_table, bodies_.size());
-}
-
-uint64_t Cubes::held_bytes() const {
-    uint64_t bytes = 0;
-    for (const Buffer* buffer : {&body_table, &body_lower, &body_upper, &top_table, &node_table, &voxel_table, &samples,
-                                 &sample_ids, &sample_attributes, &pixel_offsets, &pixel_ranges})
-        bytes += buffer->bytes();
-    return bytes;
 }
 
 }  // namespace peelray

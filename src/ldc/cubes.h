@@ -39,16 +39,16 @@ uint32_t round_resolution(uint32_t resolution);
 
 /// How a cube is sampled.
 enum class Sampling : uint8_t {
-    conservative,  ///< every pixel that a triangle touches: for `exact` hits
-    band,          ///< pixel centres, with the overlap band: for `planar` hits
-    centre,        ///< pixel centres, each triangle in one LDI: for `tolerance` hits (the paper, section 1.2.1)
+    conservative = LDC_CONSERVATIVE,  ///< every pixel that a triangle touches: for `exact` hits
+    band = LDC_BAND,                  ///< pixel centres, with the overlap band: for `planar` hits
+    centre = LDC_CENTRE,  ///< pixel centres, each triangle in one LDI: for `tolerance` hits (the paper, section 1.2.1)
 };
 
 /// How rays walk through a cube, which decides the order of its samples.
 enum class Traversal : uint8_t {
-    voxel,      ///< by voxel: all three LDIs at once, front to back
-    two_level,  ///< by pixel: one LDI after the other, over blocks of pixels (the paper, section 1.4)
-    mipmap,     ///< by pixel: the same over a full min/max pyramid
+    voxel = PEELRAY_VOXELS,         ///< by voxel: all three LDIs at once, front to back
+    two_level = PEELRAY_TWO_LEVEL,  ///< by pixel: one LDI after the other, in blocks of pixels (the paper, section 1.4)
+    mipmap = PEELRAY_MIPMAP,        ///< by pixel: the same over a full min/max pyramid
 };
 
 /// Who rasterises: all make the same cube.
@@ -74,6 +74,14 @@ enum class Batch : uint8_t {
 /// As the command line calls them.
 const char* name_of(Traversal traversal);
 const char* name_of(BuilderKind builder);
+const char* name_of(Routing routing);
+const char* name_of(Batch batch);
+
+/// Throws Error with what would work instead unless this builder captures all that this sampling asks for.
+void check_captures(BuilderKind builder, Sampling sampling);
+
+/// Throws Error unless both sides are from 2 to 32.
+void check_block(const glm::uvec2& block);
 
 /// How cubes are built and stored.
 struct CubeLayout {
@@ -125,9 +133,6 @@ class Cubes {
 
     /// LdcBody of every body as the last build left them.
     std::vector<LdcBody> download_bodies(Commands& commands) const;
-
-    /// Bytes of device memory held.
-    uint64_t held_bytes() const;
 
     Buffer body_table;              ///< LdcBody each
     Buffer body_lower, body_upper;  ///< bounds: uvec3 each, as orderedBits of shaders/bounds.glsl

@@ -11,10 +11,7 @@ void check_builder(const DeviceFeatures& features, const VkPhysicalDeviceLimits&
                    const CubeLayout& layout, Sampling sampling, uint32_t resolution) {
     if (layout.builder == BuilderKind::compute) return;
     const char* name = layout.builder == BuilderKind::peel ? "peel" : "abuffer";
-    if (layout.builder == BuilderKind::peel && sampling == Sampling::conservative)
-        fail(
-            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
-            "--builder abuffer or compute");
+    check_captures(layout.builder, sampling);
     if (!features.fragment_stores)
         fail(
             "the device '{}' cannot write buffers in fragment shaders, which --builder {} needs: use --builder compute",
@@ -53,18 +50,10 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
     return result;
 }
 
-RasterSetup with_alpha_test(const RasterSetup& setup, const Cubes& cubes, const TriangleBuffers& triangles) {
+RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles) {
     RasterSetup result = setup;
-    // Conservative samples keep what may be a hole: a hit decides at its own place.
-    result.constants.push_back(triangles.masks && cubes.sampling() != Sampling::conservative);
+    result.constants.push_back(state.tests_alpha(triangles));
     return result;
-}
-
-std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
-    std::vector<Binding> all;
-    for (const Binding& binding : bindings) all.push_back(binding);
-    for (const Binding& binding : alpha_bindings(triangles)) all.push_back(binding);
-    return all;
 }
 
 uint32_t viewport_side(uint32_t resolution) {

@@ -22,9 +22,8 @@ struct RoutedSetup {
 /// `layered`: each LDI is a layer of the targets.
 RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Sampling sampling, bool layered);
 
-/// The setup and the bindings of a pass whose fragments are tested for holes (shaders/ldc_routed_alpha.glsl).
-RasterSetup with_alpha_test(const RasterSetup& setup, const Cubes& cubes, const TriangleBuffers& triangles);
-std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles);
+/// The setup of a pass whose fragments are tested for holes (shaders/ldc_routed_alpha.glsl).
+RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles);
 
 /// The power of two that holds LDIs of so many pixels a side.
 uint32_t viewport_side(uint32_t resolution);

@@ -28,32 +28,8 @@ const char* name_of(HitTest test) {
     return "";
 }
 
-uint32_t shader_constant(HitTest test) {
-    switch (test) {
-        case HitTest::exact:
-            return 0;
-        case HitTest::planar:
-            return 1;
-        case HitTest::tolerance:
-            return 2;
-    }
-    return 0;
-}
-
 uint32_t shader_constant(Batch batch) {
-    return batch == Batch::layers ? 1 : 0;
-}
-
-uint32_t shader_constant(Traversal traversal) {
-    switch (traversal) {
-        case Traversal::voxel:
-            return 0;
-        case Traversal::two_level:
-            return 1;
-        case Traversal::mipmap:
-            return 2;
-    }
-    return 0;
+    return batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE;
 }
 
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
@@ -71,12 +47,11 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     const HitTest test = options.test;
     assert(scene.cubes.sampling() == sampling_for(test));
     const CubeLayout& layout = scene.cubes.layout();
-    std::vector<uint32_t> constants = {options.any_hit, shader_constant(test),
+    std::vector<uint32_t> constants = {options.any_hit, uint32_t(test),
                                        options.edges == Edges::precise && test == HitTest::exact,
-                                       shader_constant(layout.traversal)};
+                                       uint32_t(layout.traversal), scene.triangles.masks && test == HitTest::exact};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
     if (!four) constants.push_back(shader_constant(layout.batch));
-    constants.push_back(scene.triangles.masks && test == HitTest::exact);
     const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();
@@ -93,7 +68,7 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                                         {"hits", hits}}))
         // Four rays take the instances in turn, without the hierarchy, and only by pixel.
         if (!four || (binding.name != "top_table" && binding.name != "instance_boxes")) bindings.push_back(binding);
-    for (const Binding& binding : alpha_bindings(scene.triangles)) bindings.push_back(binding);
+    bindings = with_alpha_test(bindings, scene.triangles);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

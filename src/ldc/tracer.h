@@ -9,9 +9,9 @@
 namespace peelray {
 
 enum class HitTest : uint8_t {
-    exact,      ///< the triangles themselves
-    planar,     ///< the samples' planes, each inside its footprint
-    tolerance,  ///< the samples' depths, within a distance (the paper, section 3)
+    exact = PEELRAY_EXACT,          ///< the triangles themselves
+    planar = PEELRAY_PLANAR,        ///< the samples' planes, each inside its footprint
+    tolerance = PEELRAY_TOLERANCE,  ///< the samples' depths, within a distance (the paper, section 3)
 };
 
 /// As the command line calls them.
@@ -47,9 +47,7 @@ enum class Edges : uint8_t {
 /// has not. And `others`.
 std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others);
 
-/// Specialisation constants of the shaders that trace: PEELRAY_EXACT, ... and PEELRAY_VOXELS, ...
-uint32_t shader_constant(HitTest test);
-uint32_t shader_constant(Traversal traversal);
+/// Specialisation constant of the shaders that trace: what one ray does at a time, PEELRAY_ONE, ...
 uint32_t shader_constant(Batch batch);
 
 /// The bindings of shaders/cube_fetch.glsl.

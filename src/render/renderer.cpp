@@ -277,7 +277,7 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.base_colors.materials, others);
     commands.run_indirect(
         device.pass("shadow",
-                    {shader_constant(hit), traced && scene.has_glass, shader_constant(settings.layout.traversal),
+                    {uint32_t(hit), traced && scene.has_glass, uint32_t(settings.layout.traversal),
                      shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact}),
         bindings, p, queues.groups(), p.level * 12);
 }

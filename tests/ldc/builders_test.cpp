@@ -229,19 +229,12 @@ TEST_F(BuildersTest, SoupsInLongAndFlatBoxes) {
 }
 
 TEST_F(BuildersTest, FarFromTheOrigin) {
-    Mesh3 mesh = soup(4, 150, vec3(1), 2.0f / 64), moved;
-    for (const auto& t : mesh.triangles)
-        moved.add(mesh.positions[t.x] + vec3(500, -300, 100), mesh.positions[t.y] + vec3(500, -300, 100),
-                  mesh.positions[t.z] + vec3(500, -300, 100));
-    expect_all_same(moved, 64);
+    expect_all_same(test::moved(soup(4, 150, vec3(1), 2.0f / 64), vec3(500, -300, 100)), 64);
 }
 
 TEST_F(BuildersTest, AFloorOfTwoTriangles) {
     for (const float tilt : {0.0f, 0.5f, 0.99f}) {
-        Mesh3 mesh;
-        const vec3 a(-1, -tilt, -1), b(1, tilt, -1), c(1, tilt, 1), d(-1, -tilt, 1);
-        mesh.add(a, b, c);
-        mesh.add(a, c, d);
+        const Mesh3 mesh = test::tilted_floor(tilt);
         for (const uint32_t resolution : {16u, 64u}) expect_all_same(mesh, resolution);
     }
 }
@@ -411,9 +404,7 @@ TEST_F(BuildersTest, TwoBuildsAreTheSameByteForByte) {
 TEST_F(BuildersTest, ManyBodiesInOneBuildAndBesideOthers) {
     std::vector<Mesh3> meshes = {soup(21, 60, vec3(1), 2.0f / 48), soup(22, 90, vec3(3, 0.2f, 1), 6.0f / 96), Mesh3{},
                                  soup(23, 120, vec3(0.1f), 0.2f / 128), soup(24, 40, vec3(5), 10.0f / 16)};
-    for (vec3& p : meshes[1].positions) p += vec3(10, -4, 2);
-    meshes[1].lower += vec3(10, -4, 2);
-    meshes[1].upper += vec3(10, -4, 2);
+    meshes[1] = test::moved(meshes[1], vec3(10, -4, 2));
     const uint32_t resolutions[] = {48, 96, 64, 128, 16};
     Mesh3 all;
     std::vector<CubeBody> bodies;

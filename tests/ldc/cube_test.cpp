@@ -108,19 +108,12 @@ TEST_F(CubeTest, SoupsInLongAndFlatBoxes) {
 }
 
 TEST_F(CubeTest, FarFromTheOrigin) {
-    Mesh3 mesh = soup(4, 300, vec3(1), 2.0f / 64), moved;
-    for (const auto& t : mesh.triangles)
-        moved.add(mesh.positions[t.x] + vec3(500, -300, 100), mesh.positions[t.y] + vec3(500, -300, 100),
-                  mesh.positions[t.z] + vec3(500, -300, 100));
-    expect_right(moved, 64);
+    expect_right(test::moved(soup(4, 300, vec3(1), 2.0f / 64), vec3(500, -300, 100)), 64);
 }
 
 TEST_F(CubeTest, AFloorOfTwoTriangles) {
     for (const float tilt : {0.0f, 0.5f, 0.99f}) {
-        Mesh3 mesh;
-        const vec3 a(-1, -tilt, -1), b(1, tilt, -1), c(1, tilt, 1), d(-1, -tilt, 1);
-        mesh.add(a, b, c);
-        mesh.add(a, c, d);
+        const Mesh3 mesh = test::tilted_floor(tilt);
         for (const uint32_t resolution : {16u, 64u, 256u}) expect_right(mesh, resolution);
     }
 }
@@ -217,9 +210,7 @@ class BodiesTest : public CubeTest {
         CubeTest::SetUp();
         meshes_ = {soup(21, 60, vec3(1), 2.0f / 48), soup(22, 90, vec3(3, 0.2f, 1), 6.0f / 96), Mesh3{},
                    soup(23, 200, vec3(0.1f), 0.2f / 128), soup(24, 40, vec3(5), 10.0f / 16)};
-        for (vec3& p : meshes_[1].positions) p += vec3(10, -4, 2);
-        meshes_[1].lower += vec3(10, -4, 2);
-        meshes_[1].upper += vec3(10, -4, 2);
+        meshes_[1] = test::moved(meshes_[1], vec3(10, -4, 2));
         const uint32_t resolutions[] = {48, 96, 64, 128, 16};
         for (size_t i = 0; i < meshes_.size(); i++) {
             const Mesh3& mesh = meshes_[i];

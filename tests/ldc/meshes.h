@@ -98,6 +98,22 @@ inline Mesh3 soup(uint32_t seed, uint32_t count, const glm::vec3& size, float vo
     return mesh;
 }
 
+inline Mesh3 moved(Mesh3 mesh, const glm::vec3& by) {
+    for (glm::vec3& p : mesh.positions) p += by;
+    mesh.lower += by;
+    mesh.upper += by;
+    return mesh;
+}
+
+/// Two triangles from x = -1 to 1 and z = -1 to 1, rising by `tilt` along x.
+inline Mesh3 tilted_floor(float tilt) {
+    const glm::vec3 a(-1, -tilt, -1), b(1, tilt, -1), c(1, tilt, 1), d(-1, -tilt, 1);
+    Mesh3 mesh;
+    mesh.add(a, b, c);
+    mesh.add(a, c, d);
+    return mesh;
+}
+
 inline Mesh3 from_scene(const char* name) {
     const Geometry geometry = flatten(load_scene(name));
     return {geometry.positions, geometry.triangles, geometry.lower, geometry.upper};

@@ -8,7 +8,7 @@ PROBE(Input, Output)
 
 Output probe(Input x) {
     Output o;
-    o.to = uvec3(ldcToLdi(vec3(x.voxel), x.axis));
+    o.to = uvec3(peelrayToLdi(vec3(x.voxel), x.axis));
     o.back = ldcFromLdi(o.to, x.axis);
     o.top = ldcTopIndex(x.voxel, x.dims);
     o.node = ldcNodeInTop(x.voxel);

@@ -16,7 +16,7 @@ Output probe(Input x) {
     o.b = t.b;
     o.c = t.c;
     o.slope = t.slope;
-    const uvec3 dims = uvec3(ldcToLdi(vec3(x.grid.dims), x.axis));
+    const uvec3 dims = uvec3(peelrayToLdi(vec3(x.grid.dims), x.axis));
     o.inside = ldcBounds(t, dims.xy, o.lo, o.hi) ? 1u : 0u;
     return o;
 }
