@@ -58,6 +58,8 @@ DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatur
         VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
     features.fragment_subgroups = (subgroups.supportedStages & VK_SHADER_STAGE_FRAGMENT_BIT) &&
                                   (subgroups.supportedOperations & wanted) == wanted;
+    features.executable_properties =
+        extension_available(device, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     if (has_conservative && conservative.degenerateTrianglesRasterized) {
         const float most = conservative.maxExtraPrimitiveOverestimationSize,
                     step = conservative.extraPrimitiveOverestimationSizeGranularity;
@@ -135,9 +137,16 @@ void Device::create_logical(bool validate) {
     VkPhysicalDeviceFeatures optional{};
     features = optional_features(physical, optional);
     info.pEnabledFeatures = &optional;
-    const char* extension = VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME;
-    info.enabledExtensionCount = features.overestimation > 0 ? 1 : 0;
-    info.ppEnabledExtensionNames = &extension;
+    std::vector<const char*> extensions;
+    if (features.overestimation > 0) extensions.push_back(VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR executables{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR, nullptr, VK_TRUE};
+    if (features.executable_properties) {
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        v13.pNext = &executables;
+    }
+    info.enabledExtensionCount = uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     check_vulkan(vkCreateDevice(physical, &info, nullptr, &handle), fmt::format("opening the device '{}'", info_.name));
     volkLoadDeviceTable(&vk, handle);
     vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);

@@ -116,9 +116,38 @@ Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const
         VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, module, "main",
         constants.empty() ? nullptr : &specialization};
     info.layout = layout_;
+    if (device.features.executable_properties) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     const VkResult result = device.vk.vkCreateComputePipelines(device.handle, cache, 1, &info, nullptr, &pipeline_);
     device.vk.vkDestroyShaderModule(device.handle, module, nullptr);
     check_vulkan(result, "compiling the shader " + name_);
+}
+
+std::vector<std::pair<std::string, double>> Pass::statistics() const {
+    std::vector<std::pair<std::string, double>> found;
+    if (!device_.features.executable_properties) return found;
+    const VkPipelineExecutableInfoKHR executable{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, pipeline_, 0};
+    uint32_t count = 0;
+    const auto get = device_.vk.vkGetPipelineExecutableStatisticsKHR;
+    if (get(device_.handle, &executable, &count, nullptr) != VK_SUCCESS) return found;
+    std::vector<VkPipelineExecutableStatisticKHR> all(count, {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+    get(device_.handle, &executable, &count, all.data());
+    for (const VkPipelineExecutableStatisticKHR& one : all) {
+        const auto& value = one.value;
+        switch (one.format) {
+            case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
+                found.emplace_back(one.name, value.b32);
+                break;
+            case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR:
+                found.emplace_back(one.name, double(value.i64));
+                break;
+            case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_UINT64_KHR:
+                found.emplace_back(one.name, double(value.u64));
+                break;
+            default:
+                found.emplace_back(one.name, value.f64);
+        }
+    }
+    return found;
 }
 
 RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, const RasterSetup& setup)

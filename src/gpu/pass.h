@@ -67,6 +67,10 @@ class PassBase {
 class Pass : public PassBase {
   public:
     Pass(Device& device, VkPipelineCache cache, std::string_view shader, const std::vector<uint32_t>& constants);
+
+    /// What the driver tells of the compiled shader (registers, spills, ...), as it calls it; empty where it tells
+    /// nothing (DeviceFeatures::executable_properties).
+    std::vector<std::pair<std::string, double>> statistics() const;
 };
 
 /// How a rasterising pass is put together.
