@@ -8,6 +8,9 @@ layout(constant_id = 1) const bool glass = false;  // the scene has surfaces tha
 layout(constant_id = 2) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 3) const uint batch = 0u;      // PEELRAY_ONE, ...
 layout(constant_id = 4) const bool masked = false;  // it has masked materials
+layout(constant_id = 5) const uint instance_count = 0u;  // up to 8; 0: any number
+layout(constant_id = 6) const bool deferred = false;     // triangles are tested after their list's samples
+#define PEELRAY_DEFER deferred
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -35,7 +38,7 @@ const uint SHADOW_LAYERS = 16u;
 vec3 visibility(Ray leaving, SurfaceId from) {
     PeelrayRay ray = PeelrayRay(leaving.origin, leaving.tmin, leaving.direction, leaving.tmax);
     uvec2 skip = uvec2(from.instance, from.triangle);
-    const PeelrayOptions options = PeelrayOptions(!glass, hit_test, traversal, frame[0].tolerance, frame[0].block, batch);
+    const PeelrayOptions options = PeelrayOptions(!glass, hit_test, traversal, frame[0].tolerance, frame[0].block, batch, instance_count);
     if (!glass) return vec3(peelrayTrace(frame[0].tree, ray, skip, options).triangle == PEELRAY_MISS ? 1.0 : 0.0);
     vec3 share = vec3(1);
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {

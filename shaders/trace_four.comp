@@ -17,7 +17,7 @@ void main() {
         own_rays[k] = PeelrayRay(ray.origin, ray.tmin, ray.direction, first + uint(k) < count ? ray.tmax : ray.tmin);
         own[k] = queueSkip(i);
     }
-    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE);
+    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE, 0u);
     PeelrayHit found[4];
     peelrayTraceFour(params.tree.instances, own_rays, own, options, found);
     for (int k = 0; k < 4; k++) {

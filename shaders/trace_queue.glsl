@@ -5,9 +5,10 @@ layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 2) const bool precise_edges = false;
 layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 4) const bool masked = false;  // the scene has masked materials
+layout(constant_id = 7) const bool deferred = false;  // triangles are tested after their list's samples
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
-BUFFER(readonly, 10, Ray, rays)
+BUFFER_ALIGNED(readonly, 10, Ray, rays)
 BUFFER(readonly, 11, SurfaceId, skip)
 BUFFER(readonly, 12, uint, queue)
 BUFFER(writeonly, 13, Hit, hits)
@@ -15,6 +16,7 @@ BUFFER(writeonly, 13, Hit, hits)
 #include "base_color_buffers.glsl"
 #include "alpha_test.glsl"
 #define PEELRAY_PRECISE precise_edges
+#define PEELRAY_DEFER deferred
 #define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
 #include "peelray/peelray.glsl"
 

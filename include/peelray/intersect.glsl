@@ -48,44 +48,63 @@ bool peelrayIntersectPrecise(vec3 origin, vec3 origin_low, vec3 direction, vec3 
 /// What peelrayIntersect found; uncertain ones carry what single precision says in their lowest bit.
 const uint PEELRAY_OUTSIDE = 0u, PEELRAY_INSIDE = 1u, PEELRAY_UNCERTAIN = 2u;
 
-/// Ray against triangle in single precision (Woop, Benthin, Wald: Watertight Ray/Triangle Intersection, JCGT 2013); `origin` and
-/// corners relative to one point near all of them. At least PEELRAY_UNCERTAIN where rounding could decide: peelrayIntersectPrecise knows.
-/// An edge is seen the same way from both of its triangles, so that the low bit alone is watertight too.
-uint peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+/// What peelrayIntersectSheared needs of a direction: the axis of its largest component, and how far the others go along it.
+struct PeelrayShear {
+    uint axis;
+    vec2 slope;
+    float inv;  ///< 1 / the largest component
+};
+
+/// Cyclic permutation that brings the largest component to z.
+vec3 peelrayPermute(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
+
+PeelrayShear peelrayShear(vec3 direction) {
     const vec3 size = abs(direction);
-    const bool x_largest = size.x >= size.y && size.x >= size.z;
-    const bool y_largest = !x_largest && size.y >= size.z;
-    // Cyclic permutation that brings the largest component to z.
-#define PEELRAY_PERMUTE(v) (x_largest ? (v).yzx : (y_largest ? (v).zxy : (v)))
-    const vec3 d = PEELRAY_PERMUTE(direction);
-    precise vec3 A = PEELRAY_PERMUTE(a - origin);
-    precise vec3 B = PEELRAY_PERMUTE(b - origin);
-    precise vec3 C = PEELRAY_PERMUTE(c - origin);
-#undef PEELRAY_PERMUTE
-    const float sz = 1.0 / d.z;
-    const vec2 shear = d.xy * sz;
-    precise vec2 p = A.xy - shear * A.z;
-    precise vec2 q = B.xy - shear * B.z;
-    precise vec2 r = C.xy - shear * C.z;
+    PeelrayShear shear;
+    shear.axis = size.x >= size.y && size.x >= size.z ? 0u : (size.y >= size.z ? 1u : 2u);
+    const vec3 d = peelrayPermute(direction, shear.axis);
+    shear.inv = 1.0 / d.z;
+    shear.slope = d.xy * shear.inv;
+    return shear;
+}
+
+/// Ray against triangle in single precision (Woop, Benthin, Wald: Watertight Ray/Triangle Intersection, JCGT 2013); `origin` and
+/// corners relative to one point near all of them. At least PEELRAY_UNCERTAIN where rounding could decide, if that is asked for
+/// (`decides`, a constant): peelrayIntersectPrecise knows. An edge is seen the same way from both of its triangles, so that the low
+/// bit alone is watertight too.
+uint peelrayIntersectSheared(vec3 origin, PeelrayShear shear, vec3 a, vec3 b, vec3 c, bool decides, out float t, out vec2 uv) {
+    precise vec3 A = peelrayPermute(a - origin, shear.axis);
+    precise vec3 B = peelrayPermute(b - origin, shear.axis);
+    precise vec3 C = peelrayPermute(c - origin, shear.axis);
+    precise vec2 p = A.xy - shear.slope * A.z;
+    precise vec2 q = B.xy - shear.slope * B.z;
+    precise vec2 r = C.xy - shear.slope * C.z;
     precise vec3 edges = vec3(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);
     t = 0.0;
     uv = vec2(0);
-    // Corners are off by a few roundings of their coordinates, areas by that times the triangle's size.
-    const vec2 span = max(abs(p), max(abs(q), abs(r)));
-    const float flat_size = max(span.x, span.y);
-    const float reach = max(max(abs(A.x), max(abs(B.x), abs(C.x))), max(max(abs(A.y), max(abs(B.y), abs(C.y))),
-                            max(abs(A.z), max(abs(B.z), abs(C.z)))));
-    // The subtraction of the origin rounds relative to the operands, which may be larger than the difference.
-    const vec3 far = max(abs(origin), max(abs(a), max(abs(b), abs(c))));
-    const float bound = 1e-6 * flat_size * max(reach, max(far.x, max(far.y, far.z)));
-    if (any(greaterThan(edges, vec3(bound))) && any(lessThan(edges, vec3(-bound)))) return PEELRAY_OUTSIDE;
-    const uint certain = all(greaterThan(abs(edges), vec3(bound))) ? 0u : PEELRAY_UNCERTAIN;
+    uint certain = 0u;
+    if (decides) {
+        // Corners are off by a few roundings of their coordinates, areas by that times the triangle's size.
+        const vec2 span = max(abs(p), max(abs(q), abs(r)));
+        const float flat_size = max(span.x, span.y);
+        const float reach = max(max(abs(A.x), max(abs(B.x), abs(C.x))), max(max(abs(A.y), max(abs(B.y), abs(C.y))),
+                                max(abs(A.z), max(abs(B.z), abs(C.z)))));
+        // The subtraction of the origin rounds relative to the operands, which may be larger than the difference.
+        const vec3 far = max(abs(origin), max(abs(a), max(abs(b), abs(c))));
+        const float bound = 1e-6 * flat_size * max(reach, max(far.x, max(far.y, far.z)));
+        if (any(greaterThan(edges, vec3(bound))) && any(lessThan(edges, vec3(-bound)))) return PEELRAY_OUTSIDE;
+        certain = all(greaterThan(abs(edges), vec3(bound))) ? 0u : PEELRAY_UNCERTAIN;
+    }
     const float det = edges.x + edges.y + edges.z;
     if (!peelrayInside(edges) || det == 0.0) return certain;
     const float inv = 1.0 / det;
-    t = dot(edges, vec3(A.z, B.z, C.z)) * inv * sz;
+    t = dot(edges, vec3(A.z, B.z, C.z)) * inv * shear.inv;
     uv = edges.yz * inv;
     return certain | PEELRAY_INSIDE;
+}
+
+uint peelrayIntersect(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c, out float t, out vec2 uv) {
+    return peelrayIntersectSheared(origin, peelrayShear(direction), a, b, c, true, t, uv);
 }
 
 #endif

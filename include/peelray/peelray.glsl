@@ -36,6 +36,14 @@
 #endif
 
 const uint PEELRAY_MISS = 0xffffffffu;
+#ifdef PEELRAY_PRECISE
+#define PEELRAY_DECIDES PEELRAY_PRECISE
+#else
+#define PEELRAY_DECIDES false
+#endif
+#ifndef PEELRAY_DEFER
+#define PEELRAY_DEFER false
+#endif
 
 /// How rays are traced. Constants, but for tolerance and block.
 struct PeelrayOptions {
@@ -45,6 +53,7 @@ struct PeelrayOptions {
     float tolerance;  ///< world units
     uvec2 block;      ///< pixels of a block of the coarse level along u and v
     uint batch;       ///< by pixel: PEELRAY_ONE, ...; a constant
+    uint instances;   ///< a constant: how many there are, 1 to 8; 0: any number
 };
 
 struct PeelrayHit {
@@ -135,16 +144,16 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
 }
 
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
-bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, inout PeelrayLocal r, inout PeelrayHit hit) {
+bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, PeelrayShear shear, inout PeelrayLocal r, inout PeelrayHit hit) {
     PEELRAY_COUNT(w);
     vec3 a, b, c;
     PEELRAY_TRIANGLE(id, a, b, c);
     float t;
     vec2 uv;
-    uint found = peelrayIntersect(r.start, r.d, a - place.origin, b - place.origin, c - place.origin, t, uv);
+    uint found = peelrayIntersectSheared(r.start, shear, a - place.origin, b - place.origin, c - place.origin, PEELRAY_DECIDES, t, uv);
     float s_hit = t * place.inv_voxel;
 #ifdef PEELRAY_PRECISE
-    if (found >= PEELRAY_UNCERTAIN && PEELRAY_PRECISE) {
+    if (PEELRAY_PRECISE && found >= PEELRAY_UNCERTAIN) {
         const vec2 x = peelrayTwoSum(r.start.x, place.origin.x), y = peelrayTwoSum(r.start.y, place.origin.y),
                    z = peelrayTwoSum(r.start.z, place.origin.z);
         const bool as_given = r.s_shift == 0.0 && place.moved == 0u;
@@ -173,7 +182,31 @@ bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv,
     return s_in <= s_out && abs(o.z + s * d.z - w) <= tolerance && s > r.s_min && s < r.s_best;
 }
 
-/// The LDI's view of a vector: (u, v, w).
+/// What the samples of a list are tested with: where the ray enters and leaves their cell, from the cell's centre, voxels.
+struct PeelraySegment {
+    vec3 enters, leaves;
+    float uncertain;  ///< a plane whose values at both ends differ by less does not tell where in the pixel it is hit
+};
+
+/// `exact`: may the ray hit the triangle of this sample inside the cell? Conservative: the sample's plane passes between the
+/// segment's ends, and the triangle is in the part of the pixel where the ray meets it.
+bool peelrayMayHit(uvec2 data, PeelraySegment segment) {
+    // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
+    // word 1: slopes (2x14 bits: PEELRAY_SLOPE_RANGE), axis (2 bits), last of its list (1 bit)
+    const float unit = 8191.0 / PEELRAY_SLOPE_RANGE;  // of the slopes as they are stored
+    const float su = float(bitfieldExtract(int(data.y), 0, 14)), sv = float(bitfieldExtract(int(data.y), 14, 14));
+    const float w = float(data.x & 0xffffu) * (5.0 / 65535.0 * unit) - 2.5 * unit;
+    const bool x = (data.y & (3u << 28u)) == 0u, y = (data.y & (1u << 28u)) != 0u;
+    const vec3 normal = vec3(x ? unit : (y ? -sv : -su), x ? -su : (y ? unit : -sv), x ? -sv : (y ? -su : unit));
+    const float f0 = dot(normal, segment.enters) - w, f1 = dot(normal, segment.leaves) - w;
+    // Written so that a NaN passes.
+    if (min(f0, f1) > PEELRAY_SEGMENT_SLACK * unit || max(f0, f1) < -PEELRAY_SEGMENT_SLACK * unit) return false;
+    if (!(abs(f0 - f1) > segment.uncertain * unit)) return true;
+    const vec3 at = mix(segment.enters, segment.leaves, clamp(f0 / (f0 - f1), 0.0, 1.0));
+    const vec2 pixel = x ? at.yz : (y ? at.zx : at.xy);
+    const uvec2 bit = uvec2(clamp(pixel * 4.0 + 2.0, vec2(0), vec2(3)));
+    return (data.x >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
+}
 
 /// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
 /// valid (peelrayTrace), `skip` a triangle that does not count.
@@ -182,120 +215,118 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     PeelrayLocal r;
     if (!peelrayEnterCube(place, ray, hit.t, options, r)) return;
     const uvec3 tops = uvec3(r.last + 1) >> 4u;
+    // Cells are walked in a mirrored space, where the ray goes up along every axis: mirrored coordinates are ~coordinate.
     const bvec3 up = greaterThanEqual(r.d, vec3(0));
-    const vec3 o_inv = r.o * r.inv;
-    float s = r.s_begin, s_out = r.s_begin;
-    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last), lo = cell, hi = cell;
-    vec3 exits = vec3(0);
-    uint j = 0u;        // the next sample of the cell's list
-    bool more = false;  // the list has samples left
+    const ivec3 mirror = ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1);
+    const vec3 d = abs(r.d), inv = abs(r.inv), o = vec3(up.x ? r.o.x : -r.o.x, up.y ? r.o.y : -r.o.y, up.z ? r.o.z : -r.o.z);
+    const vec3 o_inv = o * inv;
+    // Of a packed box only the end that the ray leaves through is looked at.
+    const uvec3 ahead = uvec3(up.x ? 6u : 0u, up.y ? 8u : 2u, up.z ? 10u : 4u);
+    const PeelrayShear shear = peelrayShear(r.d);
+    float s = r.s_begin;
+    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last) ^ mirror;
     bool found_one = false;
 
-    // One turn: a new cell, or the rest of the last one's list up to the next sample that may be hit, whose triangle is tested
-    // then. Triangles are tested here and not in the inner loop, so that neighbouring rays test theirs together.
     while (true) {
-        if (!more) {
-            PEELRAY_COUNT(x);
-            // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
-            lo = hi = cell;
-            const uvec3 top = uvec3(cell) >> 4u;
-            const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
-            if ((top_entry.x >> 31u) == 0u) {
-                lo = ivec3(uvec3(top_entry.x, top_entry.x >> 10u, top_entry.x >> 20u) & 1023u) << 4;
-                hi = (ivec3(uvec3(top_entry.y, top_entry.y >> 10u, top_entry.y >> 20u) & 1023u) << 4) + 15;
+        PEELRAY_COUNT(x);
+        // The cell's entry: a list of samples, or an empty box. `last`: the box's last cell along the ray.
+        const uvec3 at = uvec3(cell ^ mirror);
+        const uvec3 top = at >> 4u;
+        const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
+        ivec3 last;
+        bool more = false;  // the list has samples left
+        uint j = 0u;        // its next sample
+        if ((top_entry.x >> 31u) == 0u) {
+            const uvec3 word = uvec3(up.x ? top_entry.y : top_entry.x, up.y ? top_entry.y : top_entry.x, up.z ? top_entry.y : top_entry.x);
+            last = (ivec3(word.x & 1023u, word.y >> 10u & 1023u, word.z >> 20u & 1023u) << 4 ^ mirror) | 15;
+        } else {
+            const uvec3 in_top = at >> 2u & 3u;
+            uint entry = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
+            int scale = 2;
+            if ((entry >> 31u) != 0u) {
+                const uvec3 in_node = at & 3u;
+                entry = PEELRAY_VOXEL((entry & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
+                scale = 0;
+                more = (entry >> 31u) != 0u;
+                j = entry & 0x7fffffffu;
+            }
+            const int inside = more ? 0 : (4 << scale) - 1;
+            const uvec3 end = more ? uvec3(0) : (uvec3(entry) >> ahead & 3u) << scale;
+            last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror) | ((1 << scale) - 1);
+        }
+        const vec3 exits = vec3(last + 1) * inv - o_inv;
+        const float s_out = min(exits.x, min(exits.y, exits.z));
+
+        if (more) {
+            PEELRAY_COUNT(y);
+            if (options.hit == PEELRAY_EXACT) {
+                PeelraySegment segment;
+                const vec3 from_centre = r.o - (vec3(at) + 0.5);
+                segment.enters = from_centre + s * r.d;
+                segment.leaves = from_centre + min(s_out, r.s_best) * r.d;
+                segment.uncertain = PEELRAY_UNCERTAIN_PLACE;
+                // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
+                do {
+                    uint candidate = PEELRAY_MISS;
+                    while (more && candidate == PEELRAY_MISS) {
+                        PEELRAY_COUNT(z);
+                        const uvec2 data = PEELRAY_SAMPLE(j);
+                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                        more = (data.y >> 30u & 1u) == 0u;
+                        j++;
+                        if (peelrayMayHit(data, segment) && id != skip) {
+                            if (PEELRAY_DEFER) candidate = id;
+                            else if (peelrayTestTriangle(place, ray, id, shear, r, hit)) found_one = true;
+                        }
+                    }
+                    if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, shear, r, hit)) found_one = true;
+                } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));
             } else {
-                const uvec3 in_top = (uvec3(cell) >> 2u) & 3u;
-                uint entry = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
-                int scale = 2;
-                if ((entry >> 31u) != 0u) {
-                    const uvec3 in_node = uvec3(cell) & 3u;
-                    entry = PEELRAY_VOXEL((entry & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
-                    scale = 0;
-                    more = (entry >> 31u) != 0u;
-                    j = entry & 0x7fffffffu;
-                }
-                if (!more) {
-                    const ivec3 base = (cell >> (scale + 2)) << (scale + 2);
-                    lo = base + (ivec3(uvec3(entry, entry >> 2u, entry >> 4u) & 3u) << scale);
-                    hi = base + (ivec3(uvec3(entry >> 6u, entry >> 8u, entry >> 10u) & 3u) << scale) + (1 << scale) - 1;
+                const vec3 o_cell = r.o - vec3(at);
+                while (more) {
+                    PEELRAY_COUNT(z);
+                    const uvec2 data = PEELRAY_SAMPLE(j);
+                    const uint axis = data.y >> 28u & 3u;
+                    const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
+                    const vec3 dr = peelrayToLdi(r.d, axis), or = peelrayToLdi(o_cell, axis);
+                    bool hits;
+                    float s_hit;
+                    if (options.hit == PEELRAY_TOLERANCE) {
+                        hits = peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToLdi(r.inv, axis), w, s_hit);
+                    } else {
+                        const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
+                        const vec2 centre = or.xy - 0.5;
+                        s_hit = (w + dot(slope, centre) - or.z) / (dr.z - dot(slope, dr.xy));
+                        const vec2 pixel = centre + s_hit * dr.xy;
+                        hits = s_hit > r.s_min && s_hit < r.s_best && abs(pixel.x) <= PEELRAY_FOOTPRINT && abs(pixel.y) <= PEELRAY_FOOTPRINT;
+                    }
+                    if (hits) {
+                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                        if (id != skip) {
+                            r.s_best = s_hit;
+                            hit.triangle = id;
+                            found_one = true;
+                        }
+                    }
+                    more = (data.y >> 30u & 1u) == 0u;
+                    j++;
                 }
             }
-            exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * r.inv - o_inv;
-            s_out = min(exits.x, min(exits.y, exits.z));
-#ifdef PEELRAY_COUNTERS
-            if (more) PEELRAY_COUNT(y);
-#endif
+            if (options.any_hit && found_one) break;
         }
 
-        uint candidate = PEELRAY_MISS;
-        const vec3 o_cell = r.o - vec3(cell);
-        while (more && candidate == PEELRAY_MISS) {
-            PEELRAY_COUNT(z);
-            // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
-            // word 1: slopes (2x14 bits: PEELRAY_SLOPE_RANGE), axis (2 bits), last of its list (1 bit)
-            const uvec2 data = PEELRAY_SAMPLE(j);
-            const uint axis = data.y >> 28u & 3u;
-            const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
-            const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
-            const vec3 dr = peelrayToLdi(r.d, axis), or = peelrayToLdi(o_cell, axis);
-            const vec2 centre = or.xy - 0.5;
-            const float inv_den = 1.0 / (dr.z - dot(slope, dr.xy));
-            const float s_plane = (w + dot(slope, centre) - or.z) * inv_den;
-            const vec2 at = centre + s_plane * dr.xy;
-            if (options.hit == PEELRAY_TOLERANCE) {
-                float s_near;
-                if (peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToLdi(r.inv, axis), w, s_near)) {
-                    const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                    if (id != skip) {
-                        r.s_best = s_near;
-                        hit.triangle = id;
-                        found_one = true;
-                    }
-                }
-            } else if (options.hit == PEELRAY_PLANAR) {
-                if (s_plane > r.s_min && s_plane < r.s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT) {
-                    const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                    if (id != skip) {
-                        r.s_best = s_plane;
-                        hit.triangle = id;
-                        found_one = true;
-                    }
-                }
-            } else {
-                // Conservative: a hit inside this voxel lies on the sample's plane between the ray's entry and exit. The
-                // steeper the plane to the ray, the better it is known; edge-on (1/0) everything passes.
-                const float slack = PEELRAY_POSITION_SLACK + PEELRAY_PLANE_SLACK * abs(inv_den);
-                const uvec2 bit = uvec2(clamp(at * 4.0 + 2.0, vec2(0), vec2(3)));
-                const bool covered = !(slack < 0.02) || (data.x >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
-                if (covered && !(s_plane < s - slack) && !(s_plane > min(s_out, r.s_best) + slack)) candidate = j;
-            }
-            more = (data.y >> 30u & 1u) == 0u;
-            j++;
-        }
-
-        if (candidate != PEELRAY_MISS) {
-            const uint id = PEELRAY_SAMPLE_ID(candidate) >> 2u;
-            if (id != skip && peelrayTestTriangle(place, ray, id, r, hit)) found_one = true;
-        }
-        if (options.any_hit && found_one) break;
-
-        if (!more) {
-            if (s_out >= min(r.s_end, r.s_best)) break;
-            // Leave through the exit face; the other coordinates come from the position but never step backwards or out of
-            // the box.
-            s = max(s, s_out);
-            const ivec3 floor_at = ivec3(floor(r.o + s * r.d));
-            cell = ivec3(up.x ? min(hi.x, max(cell.x, floor_at.x)) : max(lo.x, min(cell.x, floor_at.x)),
-                         up.y ? min(hi.y, max(cell.y, floor_at.y)) : max(lo.y, min(cell.y, floor_at.y)),
-                         up.z ? min(hi.z, max(cell.z, floor_at.z)) : max(lo.z, min(cell.z, floor_at.z)));
-            if (exits.x <= exits.y && exits.x <= exits.z)
-                cell.x = up.x ? hi.x + 1 : lo.x - 1;
-            else if (exits.y <= exits.z)
-                cell.y = up.y ? hi.y + 1 : lo.y - 1;
-            else
-                cell.z = up.z ? hi.z + 1 : lo.z - 1;
-            if (any(lessThan(cell, ivec3(0))) || any(greaterThan(cell, r.last))) break;
-        }
+        if (s_out >= min(r.s_end, r.s_best)) break;
+        // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the
+        // box.
+        s = max(s, s_out);
+        cell = clamp(ivec3(floor(o + s * d)), cell, last);
+        if (exits.x <= exits.y && exits.x <= exits.z)
+            cell.x = last.x + 1;
+        else if (exits.y <= exits.z)
+            cell.y = last.y + 1;
+        else
+            cell.z = last.z + 1;
+        if (any(greaterThan(uvec3(cell ^ mirror), uvec3(r.last)))) break;
     }
     if (found_one) {
         hit.t = (r.s_best + r.s_shift) / r.s_per_t;
@@ -318,17 +349,24 @@ uint peelrayEnter(PeelrayBox box, vec3 origin, vec3 inv, float t_min, float t_ma
     return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
 }
 
-/// Which of the eight boxes from `first` on a ray meets, nearest first: three bits each, their number in bits 24 to 27.
-uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
+/// Which of the boxes from `first` on, at most eight, a ray meets, nearest first: three bits each, their number in bits 24 to 27.
+/// `boxes`: how many, a constant.
+uint peelrayMeet(uint first, uint boxes, vec3 origin, vec3 inv, float t_min, float t_max) {
     uint keys[8];
     uint count = 0u;
-    for (uint i = 0u; i < 8u; i++) {
-        const uint key = peelrayEnter(PEELRAY_BOX(first + i), origin, inv, t_min, t_max);
-        count += key != PEELRAY_MISS ? 1u : 0u;
-        keys[i] = (key & ~7u) | i;  // misses stay last
+#define PEELRAY_KEY(i)                                                                                     \
+    {                                                                                                      \
+        keys[i] = PEELRAY_MISS;                                                                            \
+        if (boxes > uint(i)) {                                                                                \
+            const uint key = peelrayEnter(PEELRAY_BOX(first + uint(i)), origin, inv, t_min, t_max);           \
+            count += key != PEELRAY_MISS ? 1u : 0u;                                                        \
+            keys[i] = (key & ~7u) | uint(i); /* misses stay last */                                           \
+        }                                                                                                  \
     }
+    PEELRAY_KEY(0) PEELRAY_KEY(1) PEELRAY_KEY(2) PEELRAY_KEY(3) PEELRAY_KEY(4) PEELRAY_KEY(5) PEELRAY_KEY(6) PEELRAY_KEY(7)
+#undef PEELRAY_KEY
 #define PEELRAY_SWAP(i, j)                            \
-    {                                                 \
+    if (boxes > uint(j)) {                               \
         const uint smaller = min(keys[i], keys[j]);   \
         keys[j] = max(keys[i], keys[j]);              \
         keys[i] = smaller;                            \
@@ -342,9 +380,8 @@ uint peelrayMeet(uint first, vec3 origin, vec3 inv, float t_min, float t_max) {
     PEELRAY_SWAP(2, 4) PEELRAY_SWAP(3, 5)
     PEELRAY_SWAP(3, 4)
 #undef PEELRAY_SWAP
-    uint word = count << 24u;
-    for (uint i = 0u; i < 8u; i++) word |= (keys[i] & 7u) << (3u * i);
-    return word;
+    return count << 24u | (keys[0] & 7u) | (keys[1] & 7u) << 3u | (keys[2] & 7u) << 6u | (keys[3] & 7u) << 9u | (keys[4] & 7u) << 12u |
+           (keys[5] & 7u) << 15u | (keys[6] & 7u) << 18u | (keys[7] & 7u) << 21u;
 }
 
 /// Makes t count in lengths of a direction whose largest component is in [1, 2): by `scale`. False: the ray is not valid.
@@ -365,25 +402,23 @@ bool peelrayNormalise(inout PeelrayRay ray, out float scale) {
 
 #include "peelray/peelray_pixels.glsl"
 
-/// First hit of a ray in all instances with tmin < t < tmax. `skip`: instance and triangle that do not count (PEELRAY_MISS: none).
-///
-/// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
-/// components may count as zero.
-PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOptions options) {
-    const float infinity = uintBitsToFloat(0x7f800000u);
-    const PeelrayHit miss = PeelrayHit(infinity, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
-    float scale;
-    if (!peelrayNormalise(ray, scale)) return miss;
-    PeelrayHit hit = miss;
-    hit.t = ray.tmax;
-    const vec3 inv = peelrayInverse(ray.direction);
+/// Nearest hit in one instance's cube, in the order in which the cubes are stored.
+void peelrayTraceInstance(uint instance, PeelrayRay ray, uvec2 skip, PeelrayOptions options, inout PeelrayHit hit) {
+    const uint own = skip.x == instance ? skip.y : PEELRAY_MISS;
+    if (options.traversal == PEELRAY_VOXELS)
+        peelrayTraceVoxels(instance, ray, own, options, hit);
+    else
+        peelrayTracePixels(instance, ray, own, options, hit);
+}
+
+/// Walks the hierarchy over any number of instances, nearest first.
+void peelrayTraceTree(PeelrayTree tree, PeelrayRay ray, vec3 inv, uvec2 skip, PeelrayOptions options, inout PeelrayHit hit) {
     uint waiting[PEELRAY_TREE_LEVELS];  // what is left of the higher levels, as peelrayMeet gives it
     uint level = tree.levels - 1u, group = 0u;
-    // A single instance needs no boxes: it is the one child.
-    bool enters = tree.instances > 1u;
-    uint word = 1u << 24u;
+    bool enters = true;
+    uint word = 0u;
     while (true) {
-        if (enters) word = peelrayMeet(tree.first[level] + group * 8u, ray.origin, inv, ray.tmin, hit.t);
+        if (enters) word = peelrayMeet(tree.first[level] + group * 8u, 8u, ray.origin, inv, ray.tmin, hit.t);
         enters = false;
         if ((word >> 24u) == 0u) {
             level++;
@@ -396,7 +431,7 @@ PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOpt
         word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu);
         const PeelrayBox box = PEELRAY_BOX(tree.first[level] + index);
         // A hit found in between may lie before it; then it lies before all that are left of this group.
-        if (tree.instances > 1u && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) {
+        if (peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) {
             word = 0u;
             continue;
         }
@@ -407,16 +442,39 @@ PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOpt
             enters = true;
             continue;
         }
-        const uint own = skip.x == box.instance ? skip.y : PEELRAY_MISS;
-        if (options.traversal == PEELRAY_VOXELS)
-            peelrayTraceVoxels(box.instance, ray, own, options, hit);
-        else
-            peelrayTracePixels(box.instance, ray, own, options, hit);
+        peelrayTraceInstance(box.instance, ray, skip, options, hit);
         if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
+    }
+}
+
+/// First hit of a ray in all instances with tmin < t < tmax. `skip`: instance and triangle that do not count (PEELRAY_MISS: none).
+///
+/// A ray with a NaN or infinite component (but for tmax), a zero direction or tmin >= tmax misses. Denormal direction
+/// components may count as zero.
+PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOptions options) {
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    const PeelrayHit miss = PeelrayHit(infinity, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
+    float scale;
+    if (!peelrayNormalise(ray, scale)) return miss;
+    PeelrayHit hit = miss;
+    hit.t = ray.tmax;
+    const vec3 inv = peelrayInverse(ray.direction);
+    if (options.instances == 1u) {
+        peelrayTraceInstance(0u, ray, skip, options, hit);
+    } else if (options.instances != 0u) {
+        uint word = peelrayMeet(tree.first[0], options.instances, ray.origin, inv, ray.tmin, hit.t);
+        for (; (word >> 24u) != 0u; word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu)) {
+            const PeelrayBox box = PEELRAY_BOX(tree.first[0] + (word & 7u));
+            // A hit found in between may lie before it; then it lies before all that are left.
+            if (hit.triangle != PEELRAY_MISS && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) break;
+            peelrayTraceInstance(box.instance, ray, skip, options, hit);
+            if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
+        }
+    } else {
+        peelrayTraceTree(tree, ray, inv, skip, options, hit);
     }
     hit.t = hit.triangle == PEELRAY_MISS ? infinity : hit.t * scale;
     return hit;
 }
-
 
 #endif

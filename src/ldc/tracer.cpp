@@ -32,6 +32,10 @@ uint32_t shader_constant(Batch batch) {
     return batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE;
 }
 
+uint32_t instance_constant(const Instances& instances) {
+    return instances.count() <= 8 ? instances.count() : 0;
+}
+
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
     std::vector<Binding> bindings = {{"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
@@ -51,7 +55,10 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                        options.edges == Edges::precise && test == HitTest::exact,
                                        uint32_t(layout.traversal), scene.triangles.masks && test == HitTest::exact};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
-    if (!four) constants.push_back(shader_constant(layout.batch));
+    if (!four)
+        for (const uint32_t c : {shader_constant(layout.batch), instance_constant(scene.instances),
+                                 uint32_t(device.immediate)})
+            constants.push_back(c);
     const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();

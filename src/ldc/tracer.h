@@ -50,6 +50,9 @@ std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, s
 /// Specialisation constant of the shaders that trace: what one ray does at a time, PEELRAY_ONE, ...
 uint32_t shader_constant(Batch batch);
 
+/// Specialisation constant of the shaders that trace: how many instances there are, up to 8; 0: more.
+uint32_t instance_constant(const Instances& instances);
+
 /// The bindings of shaders/cube_fetch.glsl.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);
 

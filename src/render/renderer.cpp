@@ -278,7 +278,8 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     commands.run_indirect(
         device.pass("shadow",
                     {uint32_t(hit), traced && scene.has_glass, uint32_t(settings.layout.traversal),
-                     shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact}),
+                     shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact,
+                     instance_constant(scene.instances), device.immediate}),
         bindings, p, queues.groups(), p.level * 12);
 }
 
