@@ -12,10 +12,13 @@
 //   vec2  PEELRAY_RANGE(uint i)       by pixel: least and greatest depth in a block or cell of the pyramid
 //   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` only)
 // and may define
-//   PEELRAY_COUNTERS  a uvec4 that counts steps, lists, samples tested, triangles tested
+//   PEELRAY_COUNTERS  a PeelrayCounts (peelray/cube.h) that is added to
+//   PEELRAY_COUNTED   a bool: whether it is; as a constant false counting costs nothing. Without it: true.
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
+//   PEELRAY_DEFER     a constant bool: true tests triangles after the samples of their list and not among them, which is the faster
+//                     one where every lane runs every branch (software devices)
 //   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
 //                     other samples are made where there is a surface)
 //
@@ -30,9 +33,12 @@
 #include "peelray/peelray_sample.glsl"
 
 #ifdef PEELRAY_COUNTERS
-#define PEELRAY_COUNT(component) PEELRAY_COUNTERS.component++
+#ifndef PEELRAY_COUNTED
+#define PEELRAY_COUNTED true
+#endif
+#define PEELRAY_COUNT(what) { if (PEELRAY_COUNTED) PEELRAY_COUNTERS.what++; }
 #else
-#define PEELRAY_COUNT(component)
+#define PEELRAY_COUNT(what) {}
 #endif
 
 const uint PEELRAY_MISS = 0xffffffffu;
@@ -145,7 +151,7 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
 
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
 bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, PeelrayShear shear, inout PeelrayLocal r, inout PeelrayHit hit) {
-    PEELRAY_COUNT(w);
+    PEELRAY_COUNT(triangles);
     vec3 a, b, c;
     PEELRAY_TRIANGLE(id, a, b, c);
     float t;
@@ -218,8 +224,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     // Cells are walked in a mirrored space, where the ray goes up along every axis: mirrored coordinates are ~coordinate.
     const bvec3 up = greaterThanEqual(r.d, vec3(0));
     const ivec3 mirror = ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1);
-    const vec3 d = abs(r.d), inv = abs(r.inv), o = vec3(up.x ? r.o.x : -r.o.x, up.y ? r.o.y : -r.o.y, up.z ? r.o.z : -r.o.z);
-    const vec3 o_inv = o * inv;
+    const vec3 o_inv = r.o * r.inv;
     // Of a packed box only the end that the ray leaves through is looked at.
     const uvec3 ahead = uvec3(up.x ? 6u : 0u, up.y ? 8u : 2u, up.z ? 10u : 4u);
     const PeelrayShear shear = peelrayShear(r.d);
@@ -228,7 +233,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     bool found_one = false;
 
     while (true) {
-        PEELRAY_COUNT(x);
+        PEELRAY_COUNT(steps);
         // The cell's entry: a list of samples, or an empty box. `last`: the box's last cell along the ray.
         const uvec3 at = uvec3(cell ^ mirror);
         const uvec3 top = at >> 4u;
@@ -254,11 +259,11 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             const uvec3 end = more ? uvec3(0) : (uvec3(entry) >> ahead & 3u) << scale;
             last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror) | ((1 << scale) - 1);
         }
-        const vec3 exits = vec3(last + 1) * inv - o_inv;
+        const vec3 exits = vec3(last + 1) * abs(r.inv) - o_inv;
         const float s_out = min(exits.x, min(exits.y, exits.z));
 
         if (more) {
-            PEELRAY_COUNT(y);
+            PEELRAY_COUNT(cells);
             if (options.hit == PEELRAY_EXACT) {
                 PeelraySegment segment;
                 const vec3 from_centre = r.o - (vec3(at) + 0.5);
@@ -269,7 +274,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
                 do {
                     uint candidate = PEELRAY_MISS;
                     while (more && candidate == PEELRAY_MISS) {
-                        PEELRAY_COUNT(z);
+                        PEELRAY_COUNT(samples);
                         const uvec2 data = PEELRAY_SAMPLE(j);
                         const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
                         more = (data.y >> 30u & 1u) == 0u;
@@ -284,7 +289,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             } else {
                 const vec3 o_cell = r.o - vec3(at);
                 while (more) {
-                    PEELRAY_COUNT(z);
+                    PEELRAY_COUNT(samples);
                     const uvec2 data = PEELRAY_SAMPLE(j);
                     const uint axis = data.y >> 28u & 3u;
                     const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
@@ -319,7 +324,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
         // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the
         // box.
         s = max(s, s_out);
-        cell = clamp(ivec3(floor(o + s * d)), cell, last);
+        cell = clamp(ivec3(floor(r.o + s * r.d)) ^ mirror, cell, last);
         if (exits.x <= exits.y && exits.x <= exits.z)
             cell.x = last.x + 1;
         else if (exits.y <= exits.z)
