@@ -10,8 +10,8 @@
 // Filed this far beyond its own extent, in voxels, so that rounding (coordinates up to 2048) never loses a sample; half of
 // the traversal's slack.
 const float LDC_SLACK = 1e-3;
-// Large bounding boxes go to the tile queue: more pixels than this would keep one thread busy while its neighbours wait.
-const uint LDC_SMALL_PIXELS = 48;
+// Large triangles are cut into blocks of so many pixels a side.
+const uint LDC_BLOCK = 32;
 // The overlap band: a triangle also goes into a second LDI if its normal's component there is at least
 // this share of the largest. Without it 2-4 % of planar hits leak, with it 0.1-0.3 %.
 const float LDC_OVERLAP = 0.8;
@@ -111,9 +111,6 @@ ivec2 ldcDepthRange(LdcTriangle t, vec2 centre, uint sampling, float tolerance) 
 #define LDC_FITS(counts) \
     (counts.cells <= params.cell_capacity && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
 
-/// Where a list starts among the build's samples, from its voxel's entry.
-#define ldcListStart(entry) ((entry & 0x7fffffffu) - params.first_sample)
-
 // --- Keys ---
 
 uint ldcTopIndex(uvec3 voxel, uvec3 dims) {
@@ -194,12 +191,23 @@ uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling) {
     if (sampling == LDC_CONSERVATIVE) {
         // Conservative: a cell of the 4x4 grid counts when the triangle comes within 0.03 pixels of it, which is more than
         // the traversal's position slack.
-        const vec3 reach = ldcReach(t) * (0.125 + 0.03);
-        const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - (0.125 + 0.03), high = max(t.a.xy, max(t.b.xy, t.c.xy)) + (0.125 + 0.03);
-        for (uint i = 0u; i < 16u; i++) {
-            const vec2 p = corner.xy + vec2(i & 3u, i >> 2u) * 0.25 + 0.125;
-            const bool inside = all(greaterThanEqual(ldcEdges(t, p), -reach)) && all(greaterThanEqual(p, low)) && all(lessThanEqual(p, high));
-            coverage |= inside ? 1u << i : 0u;
+        const float half_cell = 0.125 + 0.03;
+        const vec3 reach = ldcReach(t) * half_cell;
+        const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - half_cell, high = max(t.a.xy, max(t.b.xy, t.c.xy)) + half_cell;
+        const vec2 first = corner.xy + 0.125;
+        // From cell to cell an edge function grows by a constant.
+        const vec2 e0 = (t.b.xy - t.a.xy) * 0.25, e1 = (t.c.xy - t.b.xy) * 0.25, e2 = (t.a.xy - t.c.xy) * 0.25;
+        vec3 row = ldcEdges(t, first) + reach;
+        for (uint y = 0u; y < 4u; y++) {
+            const float v = first.y + float(y) * 0.25;
+            vec3 edges = row;
+            for (uint x = 0u; x < 4u; x++) {
+                const float u = first.x + float(x) * 0.25;
+                const bool inside = min(edges.x, min(edges.y, edges.z)) >= 0.0 && u >= low.x && u <= high.x && v >= low.y && v <= high.y;
+                coverage |= inside ? 1u << (y * 4u + x) : 0u;
+                edges -= vec3(e0.y, e1.y, e2.y);
+            }
+            row += vec3(e0.x, e1.x, e2.x);
         }
     }
     const uint w_bits = uint(clamp(round((w + 2.0) * (65535.0 / 5.0)), 0.0, 65535.0));

@@ -12,10 +12,9 @@ uvec3 rows(uint count) { return uvec3(min(count, DISPATCH_ROW), (count + DISPATC
 void main() {
     const bool fits = counters[0].cells <= params.cell_capacity;
     const uint cells = fits ? counters[0].cells : 0u;
-    groups[LDC_GROUPS_BIG] = rows(min(counters[0].big, params.big_capacity));
-    groups[LDC_GROUPS_TILES] = rows(min(counters[0].tiles, params.tile_capacity));
+    groups[LDC_GROUPS_BLOCKS] = rows(min(counters[0].blocks, params.block_capacity));
     groups[LDC_GROUPS_OCCUPIED] = rows(min(counters[0].occupied, params.occupied_capacity));
-    groups[LDC_GROUPS_NODES] = rows(min(counters[0].nodes, params.node_capacity));
+    groups[LDC_GROUPS_NODES] = rows((min(counters[0].nodes, params.node_capacity) + 3u) / 4u);
     groups[LDC_GROUPS_FRAGMENTS] = rows((min(counters[0].fragments, params.fragment_capacity) + 127u) / 128u);
     groups[LDC_GROUPS_LONG] = rows(min(counters[0].long_lists, params.long_capacity));
     groups[LDC_GROUPS_CELLS] = rows((cells + 255u) / 256u);

@@ -1,22 +1,58 @@
-// Rasterises small triangles, one thread each, into the LDIs that capture them; queues the large ones.
+// Rasterises small triangles, one thread each, into the LDIs that capture them; cuts the large ones into blocks of pixels.
 #version 460
 #include "common.glsl"
 #include "params.h"
-layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool masked = false;  // centres where a material has a hole give no samples
+layout(local_size_x = 128) in;
+layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
+layout(constant_id = 1) const uint small_pixels = 48u;  // of a triangle's bounds that a thread goes through by itself
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
 BUFFER(readonly, 1, uvec3, triangles)
 BUFFER(, 2, LdcCounters, counters)
 BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
-BUFFER(writeonly, 5, uint, big_triangles)
+BUFFER(writeonly, 5, uvec2, blocks)
 BUFFER(readonly, 6, LdcBody, bodies)
 #define BASE_COLOR_FIRST_BINDING 7
 #include "base_color_buffers.glsl"
 #include "bounds.glsl"
 #include "ldc_alpha.glsl"
 #include "ldc_emit.glsl"
+#include "ldc_projected.glsl"
+
+// Triangles that touch many blocks are cut by all threads of the workgroup.
+const uint LDC_MANY_BLOCKS = 16u;
+shared uint many_count;
+shared uint many[gl_WorkGroupSize.x];
+
+/// Queues the blocks of pixels that a large triangle touches: of those in its bounds number `first`, `first` + `step`, ...
+void queueBlocks(LdcTriangle t, ivec2 lo, ivec2 hi, uint id, uint first, uint step) {
+    const uvec2 corner = uvec2(lo) / LDC_BLOCK, size = uvec2(hi) / LDC_BLOCK - corner + 1u;
+    const vec3 reach = ldcReach(t);
+    // Half a block and a pixel: never tighter than the test of the pixels themselves.
+    const float half_block = float(LDC_BLOCK) * 0.5;
+    for (uint i = first; i < size.x * size.y; i += step) {
+        const uvec2 block = corner + uvec2(i % size.x, i / size.x);
+        if (any(lessThan(ldcEdges(t, vec2(block) * float(LDC_BLOCK) + half_block), -(half_block + 0.51) * reach))) continue;
+        const uint slot = atomicAdd(counters[0].blocks, 1u);
+        if (slot < params.block_capacity) blocks[slot] = uvec2(id, block.x | block.y << 16u);
+    }
+}
+
+bool touchesMany(ivec2 lo, ivec2 hi) {
+    const uvec2 size = uvec2(hi) / LDC_BLOCK - uvec2(lo) / LDC_BLOCK + 1u;
+    return size.x * size.y > LDC_MANY_BLOCKS;
+}
+
+/// Fragments of a small triangle: counted if `write` is false, else written from `position` on.
+uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace place, bool write, uint position) {
+    uint count = 0u;
+    for (int y = lo.y; y <= hi.y; y++)
+        for (int x = lo.x; x <= hi.x; x++)
+            if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(place.grid, id, vec2(x, y) + 0.5)))
+                count += ldcEmitPixel(t, ivec2(x, y), id, place, write, position + count);
+    return count;
+}
 
 void main() {
     const uint id = params.first_triangle + GLOBAL_INDEX;
@@ -40,33 +76,41 @@ void main() {
             }
         }
     }
-    for (uint axis = 0u; axis < 3u; axis++) {
+    // Only the overlap band has triangles that several LDIs capture.
+    const uint axes = params.sampling == LDC_BAND ? 3u : 1u;
+    for (uint turn = 0u; turn < axes; turn++) {
+        if (gl_LocalInvocationIndex == 0u) many_count = 0u;
+        barrier();
+        const uint axis = axes == 1u ? ldcAxis(normal) : turn;
         bool captured = valid && ldcCaptured(normal, axis, params.sampling);
         LdcTriangle t;
         ivec2 lo = ivec2(0), hi = ivec2(-1);
+        vec3 reach = vec3(0);
         if (captured) {
             t = ldcProject(grid, a, b, c, normal, axis);
-            const uvec3 dims = uvec3(peelrayToLdi(vec3(grid.dims), axis));
-            captured = ldcBounds(t, dims.xy, lo, hi);
+            reach = ldcReach(t);
+            captured = ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi);
             const ivec2 size = hi - lo + 1;
-            if (captured && uint(size.x) * uint(size.y) > LDC_SMALL_PIXELS) {
-                const uint slot = atomicAdd(counters[0].big, 1u);
-                if (slot < params.big_capacity) big_triangles[slot] = id << 2u | axis;
+            if (captured && uint(size.x) * uint(size.y) > small_pixels) {
+                if (touchesMany(lo, hi))
+                    many[atomicAdd(many_count, 1u)] = id << 2u | axis;
+                else
+                    queueBlocks(t, lo, hi, id << 2u | axis, 0u, 1u);
                 captured = false;
             }
         }
-        const vec3 reach = captured ? ldcReach(t) : vec3(0);
         uint count = 0u;
-        if (captured)
-            for (int y = lo.y; y <= hi.y; y++)
-                for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(grid, id << 2u | axis, vec2(x, y) + 0.5)))
-                        count += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, false, 0u);
-        uint position = ldcReserve(count);
-        if (count != 0u)
-            for (int y = lo.y; y <= hi.y; y++)
-                for (int x = lo.x; x <= hi.x; x++)
-                    if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(grid, id << 2u | axis, vec2(x, y) + 0.5)))
-                        position += ldcEmitPixel(t, ivec2(x, y), id << 2u | axis, place, true, position);
+        if (captured) count = emitSmall(t, reach, lo, hi, id << 2u | axis, place, false, 0u);
+        const uint position = ldcReserve(count);
+        if (count != 0u) emitSmall(t, reach, lo, hi, id << 2u | axis, place, true, position);
+        for (uint i = 0u; i < many_count; i++) {
+            const uint large = many[i];
+            const CubeGrid its_grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
+            const LdcTriangle its = ldcProjected(its_grid, large);
+            ivec2 its_lo, its_hi;
+            ldcBounds(its, uvec3(peelrayToLdi(vec3(its_grid.dims), large & 3u)).xy, its_lo, its_hi);
+            queueBlocks(its, its_lo, its_hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
+        }
+        barrier();
     }
 }

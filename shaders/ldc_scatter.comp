@@ -1,4 +1,4 @@
-// Puts every fragment's id into its voxel's list, in the order in which the atomics happened to run.
+// Writes every fragment's sample to its list, in the order in which the atomics happened to run: what a ray hits does not depend on it.
 #version 460
 #include "ldc_common.glsl"
 layout(local_size_x = 128) in;
@@ -6,12 +6,27 @@ PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)
 BUFFER(readonly, 1, uint, voxel_table)
 BUFFER(readonly, 2, LdcFragment, fragments)
-BUFFER(writeonly, 3, uint, unsorted_ids)
+BUFFER(readonly, 3, uint, voxel_counts)
+BUFFER(readonly, 4, uvec2, node_cells)
+BUFFER(readonly, 5, vec3, positions)
+BUFFER(readonly, 6, uvec3, triangles)
+BUFFER_ALIGNED(writeonly, 7, uvec2, samples)
+BUFFER(writeonly, 8, uint, sample_ids)
+BUFFER(readonly, 9, LdcBody, bodies)
+#include "ldc_projected.glsl"
 
 void main() {
+    // Everything is redone when it did not fit: then nothing here may be trusted.
     if (!LDC_FITS(counters[0])) return;
-    const uint count = min(counters[0].fragments, params.fragment_capacity);
     const uint i = GLOBAL_INDEX;
-    if (i >= count) return;
-    unsorted_ids[ldcListStart(voxel_table[params.first_node * 64u + fragments[i].cell]) + fragments[i].local] = fragments[i].id;
+    if (i >= min(counters[0].fragments, params.fragment_capacity)) return;
+    const uint voxel = fragments[i].cell, id = fragments[i].id, slot = fragments[i].local;
+    const uint cell = node_cells[voxel >> 6u].x;
+    const CubeGrid grid = bodies[node_cells[voxel >> 6u].y].grid;
+    const uvec3 position = uvec3(cell & 1023u, cell >> 10u & 1023u, cell >> 20u) * 4u + ldcCell64(voxel & 63u);
+    uvec2 data = ldcPackSample(ldcProjected(grid, id), position, id & 3u, params.sampling);
+    if (slot + 1u == voxel_counts[voxel]) data.y |= 1u << 30u;
+    const uint at = (voxel_table[params.first_node * 64u + voxel] & 0x7fffffffu) + slot;
+    samples[at] = data;
+    sample_ids[at] = id;
 }

@@ -1,26 +1,33 @@
-// Numbers the occupied 16x16x16 cells and finds the first node of each; the totals go to the counters.
+// Numbers the occupied 16x16x16 cells and their nodes, in the order in which the workgroups happen to run.
 #version 460
 #include "ldc_common.glsl"
 layout(local_size_x = 256) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, uvec2, node_masks)
-BUFFER(readonly, 1, uvec2, sums)
-BUFFER(writeonly, 2, uvec2, top_table)
-BUFFER(writeonly, 3, uint, top_cells)
-BUFFER(, 4, LdcCounters, counters)
+BUFFER(writeonly, 1, uvec2, top_table)
+BUFFER(writeonly, 2, uvec2, top_cells)
+BUFFER(, 3, LdcCounters, counters)
+
+shared uint group_occupied, group_nodes, first_occupied, first_node;
 
 void main() {
-    const uint i = GLOBAL_INDEX;
-    const uint count = counters[0].cells;
-    if (i >= count) return;
-    const uint nodes = ldcMaskCount(node_masks[i]);
-    const uvec2 before = sums[i];
+    const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
+    if (lane == 0u) group_occupied = group_nodes = 0u;
+    barrier();
+    const uint nodes = i < counters[0].cells ? ldcMaskCount(node_masks[i]) : 0u;
+    uint occupied = 0u, node = 0u;
     if (nodes != 0u) {
-        top_table[params.first_cell + i] = uvec2(0x80000000u, params.first_occupied + before.x);
-        if (before.x < params.occupied_capacity) top_cells[before.x] = i;
+        occupied = atomicAdd(group_occupied, 1u);
+        node = atomicAdd(group_nodes, nodes);
     }
-    if (i == count - 1u) {
-        counters[0].occupied = before.x + (nodes != 0u ? 1u : 0u);
-        counters[0].nodes = before.y + nodes;
+    barrier();
+    if (lane == 0u && group_occupied != 0u) {
+        first_occupied = atomicAdd(counters[0].occupied, group_occupied);
+        first_node = atomicAdd(counters[0].nodes, group_nodes);
     }
+    barrier();
+    if (nodes == 0u) return;
+    occupied += first_occupied;
+    top_table[params.first_cell + i] = uvec2(0x80000000u, params.first_occupied + occupied);
+    if (occupied < params.occupied_capacity) top_cells[occupied] = uvec2(i, first_node + node);
 }

@@ -48,16 +48,15 @@ struct LdcParams {
     uint occupied_capacity;  ///< of them occupied
     uint node_capacity;      ///< occupied 4x4x4 nodes that have room
     uint fragment_capacity;
-    uint big_capacity;   ///< entries of the queue of large triangles
-    uint tile_capacity;  ///< entries of the queue of their 16x16-pixel tiles
-    uint long_capacity;  ///< entries of the queue of long lists
+    uint block_capacity;  ///< entries of the queue of blocks of large triangles
+    uint long_capacity;   ///< entries of the queue of long lists; by pixel
     uint axis;           ///< of ldc_sat_scan
     uint block;          ///< of ldc_ranges: pixels of a block along u, and along v << 16
     uint level;          ///< of ldc_ranges_up; of ldc_peel: passes before this one
     uint viewport;       ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
     uint side;           ///< of peeling: pixels along a side of the targets
 };
-SHARED_SIZE(LdcParams, 88);
+SHARED_SIZE(LdcParams, 84);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
 #define LDC_BAND 1u          // pixel centres, with the overlap band: `planar`
 #define LDC_CENTRE 2u        // pixel centres, each triangle in one LDI, as in the paper: `tolerance`
@@ -65,8 +64,8 @@ SHARED_SIZE(LdcParams, 88);
 /// Counted on the GPU while building; whatever exceeds a capacity makes the host grow it and build again.
 struct LdcCounters {
     uint fragments;  ///< samples
-    uint big;
-    uint tiles;
+    uint blocks;    ///< of 32x32 pixels, of large triangles
+    uint listed;    ///< samples that are in lists; by voxel
     uint cells;     ///< 16x16x16 cells, or pixels
     uint occupied;  ///< of them occupied
     uint nodes;     ///< occupied 4x4x4 nodes
@@ -90,16 +89,15 @@ SHARED_SIZE(LdcCounters, 68);
 #define LDC_FARTHEST_BY_VOXEL 2.0f
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
-#define LDC_GROUPS_BIG 0u
-#define LDC_GROUPS_TILES 1u
-#define LDC_GROUPS_OCCUPIED 2u
-#define LDC_GROUPS_NODES 3u
-#define LDC_GROUPS_FRAGMENTS 4u
-#define LDC_GROUPS_LONG 5u
-#define LDC_GROUPS_CELLS 6u  // 256 to a group
-#define LDC_GROUPS_CELLS_BY_64 7u
-#define LDC_GROUPS_LINES 8u  // three, of 64
-#define LDC_GROUPS 11u
+#define LDC_GROUPS_BLOCKS 0u
+#define LDC_GROUPS_OCCUPIED 1u
+#define LDC_GROUPS_NODES 2u  // four to a group
+#define LDC_GROUPS_FRAGMENTS 3u
+#define LDC_GROUPS_LONG 4u
+#define LDC_GROUPS_CELLS 5u  // 256 to a group
+#define LDC_GROUPS_CELLS_BY_64 6u
+#define LDC_GROUPS_LINES 7u  // three, of 64
+#define LDC_GROUPS 10u
 
 /// Parameters of ldc_max, one step of a reduction.
 struct MaxParams {

@@ -149,6 +149,12 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
     return r.s_begin <= r.s_end;
 }
 
+/// Does a hit at `s_hit` take the place of what the ray has hit so far? Of two at the same place that of the smaller number counts: lists
+/// are in no order.
+bool peelrayNearer(PeelrayLocal r, float s_hit, uint id, PeelrayHit hit) {
+    return s_hit > r.s_min && (s_hit < r.s_best || (s_hit == r.s_best && hit.triangle != PEELRAY_MISS && id < hit.triangle));
+}
+
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
 bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, PeelrayShear shear, inout PeelrayLocal r, inout PeelrayHit hit) {
     PEELRAY_COUNT(triangles);
@@ -168,7 +174,7 @@ bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, Peelray
         s_hit = t * place.inv_voxel;
     }
 #endif
-    if ((found & PEELRAY_INSIDE) == 0u || !(s_hit > r.s_min && s_hit < r.s_best)) return false;
+    if ((found & PEELRAY_INSIDE) == 0u || !peelrayNearer(r, s_hit, id, hit)) return false;
 #ifdef PEELRAY_ACCEPT
     if (!PEELRAY_ACCEPT(id, uv)) return false;
 #endif
@@ -179,13 +185,13 @@ bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, Peelray
 }
 
 /// `tolerance`: where a ray, while it is in the column of the pixel [0, 1] x [0, 1], comes nearest in depth to a sample at depth `w`;
-/// false: it stays farther from it than `tolerance` (voxels), or what it has hit lies before. `o`, `d`, `inv` as the LDI sees them.
+/// false: it stays farther from it than `tolerance` (voxels), or what it has hit lies before (peelrayNearer decides). `o`, `d`, `inv` as the LDI sees them.
 bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv, float w, out float s) {
     const vec2 a = -o.xy * inv.xy, b = (1.0 - o.xy) * inv.xy;
     const vec2 enters = min(a, b), leaves = max(a, b);
-    const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_best, min(leaves.x, leaves.y));
+    const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_end, min(leaves.x, leaves.y));
     s = abs(d.z) < 1e-12 ? s_in : clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
-    return s_in <= s_out && abs(o.z + s * d.z - w) <= tolerance && s > r.s_min && s < r.s_best;
+    return s_in <= s_out && abs(o.z + s * d.z - w) <= tolerance && s > r.s_min && s <= r.s_best;
 }
 
 /// What the samples of a list are tested with: where the ray enters and leaves their cell, from the cell's centre, voxels.
@@ -303,11 +309,11 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
                         const vec2 centre = or.xy - 0.5;
                         s_hit = (w + dot(slope, centre) - or.z) / (dr.z - dot(slope, dr.xy));
                         const vec2 pixel = centre + s_hit * dr.xy;
-                        hits = s_hit > r.s_min && s_hit < r.s_best && abs(pixel.x) <= PEELRAY_FOOTPRINT && abs(pixel.y) <= PEELRAY_FOOTPRINT;
+                        hits = s_hit > r.s_min && s_hit <= r.s_best && abs(pixel.x) <= PEELRAY_FOOTPRINT && abs(pixel.y) <= PEELRAY_FOOTPRINT;
                     }
                     if (hits) {
                         const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                        if (id != skip) {
+                        if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
                             r.s_best = s_hit;
                             hit.triangle = id;
                             found_one = true;

@@ -23,13 +23,13 @@ bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, Peelray
         if (!peelrayTestDepth(r, tolerance, o_pixel, d, inv, w, s_hit)) return false;
     } else {
         const vec2 at = centre + s_plane * d.xy;
-        if (!(s_plane > r.s_min && s_plane < r.s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT)) return false;
+        if (!(s_plane > r.s_min && s_plane <= r.s_best && abs(at.x) <= PEELRAY_FOOTPRINT && abs(at.y) <= PEELRAY_FOOTPRINT)) return false;
         // By voxel the sample is met in the voxels that its patch touches, and nowhere else.
         const float extent = PEELRAY_FOOTPRINT * (abs(slope.x) + abs(slope.y)) + PEELRAY_POSITION_SLACK;
         if (high < floor(w - extent) || low > floor(w + extent) + 1.0) return false;
     }
     const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-    if (id == skip) return false;
+    if (id == skip || !peelrayNearer(r, s_hit, id, hit)) return false;
     r.s_best = s_hit;
     hit.triangle = id;
     return true;

@@ -1,4 +1,4 @@
-// The `compute` builder's rasteriser: small triangles one thread each, large ones in tiles. Private to src/ldc.
+// The `compute` builder's rasteriser: small triangles one thread each, large ones in blocks. Private to src/ldc.
 #pragma once
 
 #include "ldc/build_stage.h"
@@ -11,10 +11,10 @@ class ComputeRasterizer : public BuildStage {
     void allocate(Commands& commands, BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
     bool grow(BuildState& state, const LdcCounters& counts) override;
-    uint64_t bytes() const override { return big_triangles_.bytes() + tiles_.bytes(); }
+    uint64_t bytes() const override { return blocks_.bytes(); }
 
   private:
-    Buffer big_triangles_, tiles_;
+    Buffer blocks_;
 };
 
 }  // namespace peelray

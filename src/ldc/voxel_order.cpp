@@ -12,25 +12,20 @@ void VoxelOrder::guess(BuildState& state, const BuildSize& size) {
     p.fragment_capacity = bounded(state, 2 * size.pixels + 4 * size.triangles, sizeof(LdcFragment));
     p.node_capacity = bounded(state, size.pixels / 8 + 256, 256);
     p.occupied_capacity = bounded(state, std::min<uint64_t>(p.cell_capacity, size.pixels / 64 + 64), 256);
-    p.long_capacity = bounded(state, 1024, 4);
 }
 
 void VoxelOrder::allocate(Commands& commands, BuildState& state) {
     const LdcParams& p = state.params;
-    const uint64_t cells = p.cell_capacity, sums = std::max<uint64_t>(cells, p.node_capacity);
+    const uint64_t cells = p.cell_capacity;
     state.cubes.reserve(commands,
                         state.before + TableSize{cells, p.occupied_capacity, p.node_capacity, p.fragment_capacity},
                         state.before);
     Device& device = state.device;
     ensure_size(device, state.node_masks, "node masks", cells * 8);
     ensure_size(device, occupancy_sums_, "occupancy sums", cells * 4);
-    ensure_size(device, sums_, "prefix sums", sums * 8);
-    ensure_size(device, block_sums_, "prefix sums of blocks", (sums / SCAN_BLOCK + 2) * 8);
-    ensure_size(device, top_cells_, "occupied cells", uint64_t(p.occupied_capacity) * 4);
+    ensure_size(device, top_cells_, "occupied cells", uint64_t(p.occupied_capacity) * 8);
     ensure_size(device, node_cells_, "occupied nodes", uint64_t(p.node_capacity) * 8);
     ensure_size(device, voxel_counts_, "voxel counts", uint64_t(p.node_capacity) * 256);
-    ensure_size(device, unsorted_ids_, "unsorted samples", uint64_t(p.fragment_capacity) * 4);
-    ensure_size(device, long_lists_, "queue of long lists", uint64_t(p.long_capacity) * 4);
 }
 
 void VoxelOrder::clear(Commands& commands, const BuildState& state) {
@@ -38,22 +33,50 @@ void VoxelOrder::clear(Commands& commands, const BuildState& state) {
     commands.fill(voxel_counts_, 0, 0, uint64_t(state.params.node_capacity) * 256);
 }
 
+/// The sums for the boxes have nothing to do with the lists: they are recorded between the lists' passes, where the GPU has
+/// room for both.
 void VoxelOrder::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     record_nodes(commands, state);
-    record_lists(commands, state, triangles);
-    record_boxes(commands, state);
+    record_sums(commands, state, 0);
+    commands.run_indirect(state.device.pass("ldc_count"),
+                          {{"counters", state.counters},
+                           {"top_table", state.cubes.top_table},
+                           {"node_table", state.cubes.node_table},
+                           {"fragments", state.fragments},
+                           {"voxel_counts", voxel_counts_}},
+                          state.params, state.groups, LDC_GROUPS_FRAGMENTS * 12);
+    record_sums(commands, state, 1);
+    commands.run_indirect(
+        state.device.pass("ldc_voxels"),
+        {{"counters", state.counters}, {"voxel_counts", voxel_counts_}, {"voxel_table", state.cubes.voxel_table}},
+        state.params, state.groups, LDC_GROUPS_NODES * 12);
+    record_sums(commands, state, 2);
+    commands.run_indirect(state.device.pass("ldc_scatter"),
+                          {{"counters", state.counters},
+                           {"voxel_table", state.cubes.voxel_table},
+                           {"fragments", state.fragments},
+                           {"voxel_counts", voxel_counts_},
+                           {"node_cells", node_cells_},
+                           {"positions", triangles.positions},
+                           {"triangles", triangles.triangles},
+                           {"samples", state.cubes.samples},
+                           {"sample_ids", state.cubes.sample_ids},
+                           {"bodies", state.cubes.body_table}},
+                          state.params, state.groups, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run_indirect(state.device.pass("ldc_top_boxes"),
+                          {{"node_masks", state.node_masks},
+                           {"occupancy_sums", occupancy_sums_},
+                           {"top_table", state.cubes.top_table},
+                           {"bodies", state.cubes.body_table},
+                           {"counters", state.counters}},
+                          state.params, state.groups, LDC_GROUPS_CELLS_BY_64 * 12);
 }
 
 /// The tables down to the nodes.
 void VoxelOrder::record_nodes(Commands& commands, const BuildState& state) {
     const LdcParams& p = state.params;
-    commands.run_indirect(state.device.pass("ldc_top_counts"),
-                          {{"node_masks", state.node_masks}, {"sums", sums_}, {"counters", state.counters}}, p,
-                          state.groups, LDC_GROUPS_CELLS * 12);
-    record_scan(commands, state, p.cell_capacity, offsetof(LdcCounters, cells) / 4, sums_, block_sums_);
     commands.run_indirect(state.device.pass("ldc_tops"),
                           {{"node_masks", state.node_masks},
-                           {"sums", sums_},
                            {"top_table", state.cubes.top_table},
                            {"top_cells", top_cells_},
                            {"counters", state.counters}},
@@ -62,7 +85,6 @@ void VoxelOrder::record_nodes(Commands& commands, const BuildState& state) {
     commands.run_indirect(state.device.pass("ldc_nodes"),
                           {{"counters", state.counters},
                            {"node_masks", state.node_masks},
-                           {"sums", sums_},
                            {"top_cells", top_cells_},
                            {"node_table", state.cubes.node_table},
                            {"node_cells", node_cells_},
@@ -70,82 +92,19 @@ void VoxelOrder::record_nodes(Commands& commands, const BuildState& state) {
                           p, state.groups, LDC_GROUPS_OCCUPIED * 12);
 }
 
-/// The voxels' lists, sorted.
-void VoxelOrder::record_lists(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
-    const LdcParams& p = state.params;
-    commands.run_indirect(state.device.pass("ldc_count"),
-                          {{"counters", state.counters},
-                           {"top_table", state.cubes.top_table},
-                           {"node_table", state.cubes.node_table},
-                           {"fragments", state.fragments},
-                           {"voxel_counts", voxel_counts_}},
-                          p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(state.device.pass("ldc_node_sums"),
-                          {{"counters", state.counters}, {"voxel_counts", voxel_counts_}, {"sums", sums_}}, p,
-                          state.groups, LDC_GROUPS_NODES * 12);
-    record_scan(commands, state, p.node_capacity, offsetof(LdcCounters, nodes) / 4, sums_, block_sums_);
-    commands.run_indirect(state.device.pass("ldc_voxels"),
-                          {{"counters", state.counters},
-                           {"voxel_counts", voxel_counts_},
-                           {"sums", sums_},
-                           {"voxel_table", state.cubes.voxel_table},
-                           {"long_lists", long_lists_}},
-                          p, state.groups, LDC_GROUPS_NODES * 12);
-    state.record_groups(commands);
-    commands.run_indirect(state.device.pass("ldc_scatter"),
-                          {{"counters", state.counters},
-                           {"voxel_table", state.cubes.voxel_table},
-                           {"fragments", state.fragments},
-                           {"unsorted_ids", unsorted_ids_}},
-                          p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(state.device.pass("ldc_sort"),
-                          {{"counters", state.counters},
-                           {"voxel_table", state.cubes.voxel_table},
-                           {"fragments", state.fragments},
-                           {"unsorted_ids", unsorted_ids_},
-                           {"voxel_counts", voxel_counts_},
-                           {"node_cells", node_cells_},
-                           {"positions", triangles.positions},
-                           {"triangles", triangles.triangles},
-                           {"samples", state.cubes.samples},
-                           {"sample_ids", state.cubes.sample_ids},
-                           {"bodies", state.cubes.body_table}},
-                          p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(state.device.pass("ldc_sort_long"),
-                          {{"counters", state.counters},
-                           {"voxel_table", state.cubes.voxel_table},
-                           {"voxel_counts", voxel_counts_},
-                           {"long_lists", long_lists_},
-                           {"node_cells", node_cells_},
-                           {"positions", triangles.positions},
-                           {"triangles", triangles.triangles},
-                           {"unsorted_ids", unsorted_ids_},
-                           {"sample_ids", state.cubes.sample_ids},
-                           {"samples", state.cubes.samples},
-                           {"bodies", state.cubes.body_table}},
-                          p, state.groups, LDC_GROUPS_LONG * 12);
-}
-
-/// The empty boxes of the 16³ cells.
-void VoxelOrder::record_boxes(Commands& commands, const BuildState& state) {
+/// Prefix sums along an axis of the summed-volume table of occupied 16³ cells.
+void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32_t axis) {
     LdcParams p = state.params;
-    for (p.axis = 0; p.axis < 3; p.axis++)
-        commands.run_indirect(state.device.pass("ldc_sat_scan"),
-                              {{"node_masks", state.node_masks},
-                               {"occupancy_sums", occupancy_sums_},
-                               {"bodies", state.cubes.body_table},
-                               {"counters", state.counters}},
-                              p, state.groups, (LDC_GROUPS_LINES + p.axis) * 12);
-    commands.run_indirect(state.device.pass("ldc_top_boxes"),
+    p.axis = axis;
+    commands.run_indirect(state.device.pass("ldc_sat_scan"),
                           {{"node_masks", state.node_masks},
                            {"occupancy_sums", occupancy_sums_},
-                           {"top_table", state.cubes.top_table},
                            {"bodies", state.cubes.body_table},
                            {"counters", state.counters}},
-                          p, state.groups, LDC_GROUPS_CELLS_BY_64 * 12);
+                          p, state.groups, (LDC_GROUPS_LINES + axis) * 12);
 }
 
-// A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are four stages.
+// A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three stages.
 bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
     LdcParams& p = state.params;
     const uint64_t most = state.most();
@@ -155,14 +114,12 @@ bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
         grow_capacity(p.fragment_capacity, counts.fragments, left_of(most / sizeof(LdcFragment), state.before.samples));
     grown |= grow_capacity(p.occupied_capacity, counts.occupied, left_of(most / 256, state.before.occupied));
     grown |= grow_capacity(p.node_capacity, counts.nodes, left_of(most / 256, state.before.nodes));
-    grown |= grow_capacity(p.long_capacity, counts.long_lists, most / 4);
     return grown;
 }
 
 uint64_t VoxelOrder::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&sums_, &block_sums_, &top_cells_, &node_cells_, &voxel_counts_, &long_lists_,
-                                 &unsorted_ids_, &occupancy_sums_})
+    for (const Buffer* buffer : {&top_cells_, &node_cells_, &voxel_counts_, &occupancy_sums_})
         bytes += buffer->bytes();
     return bytes;
 }

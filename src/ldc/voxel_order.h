@@ -16,10 +16,9 @@ class VoxelOrder : public BuildStage {
 
   private:
     void record_nodes(Commands& commands, const BuildState& state);
-    void record_lists(Commands& commands, const BuildState& state, const TriangleBuffers& triangles);
-    void record_boxes(Commands& commands, const BuildState& state);
+    void record_sums(Commands& commands, const BuildState& state, uint32_t axis);
 
-    Buffer sums_, block_sums_, top_cells_, node_cells_, voxel_counts_, long_lists_, unsorted_ids_, occupancy_sums_;
+    Buffer top_cells_, node_cells_, voxel_counts_, occupancy_sums_;
 };
 
 }  // namespace peelray

@@ -47,8 +47,8 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
 LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
     LdcCounters sum = a;
     sum.fragments += b.fragments;
-    sum.big += b.big;
-    sum.tiles += b.tiles;
+    sum.blocks += b.blocks;
+    sum.listed += b.listed;
     sum.cells += b.cells;
     sum.occupied += b.occupied;
     sum.nodes += b.nodes;

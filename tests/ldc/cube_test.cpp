@@ -37,6 +37,10 @@ class CubeTest : public DeviceTest {
         return look_at(cube_of(mesh, resolution, sampling));
     }
 
+    void expect_same(const Built& a, const Built& b) {
+        EXPECT_TRUE(DecodedCube(a.body, a.tables).samples == DecodedCube(b.body, b.tables).samples);
+    }
+
     /// Compares the cube with the CPU's and checks every sample.
     void expect_right(const Mesh3& mesh, const Built& built, Sampling sampling) {
         const DecodedCube decoded(built.body, built.tables);
@@ -155,11 +159,11 @@ TEST_F(CubeTest, NothingButDegenerateTrianglesIsAnEmptyCube) {
     EXPECT_EQ(built.tables.top[0], glm::uvec2(0, 3 | 3 << 10 | 3 << 20)) << "one box: everything";
 }
 
-TEST_F(CubeTest, TwoBuildsAreTheSameByteForByte) {
+TEST_F(CubeTest, TwoBuildsHoldTheSameSamples) {
     for (const Sampling sampling : {Sampling::conservative, Sampling::band}) {
         const Mesh3 mesh = soup(11, 800, vec3(1), 2.0f / 64);
         const Built first = build(mesh, 64, sampling), second = build(mesh, 64, sampling);
-        EXPECT_TRUE(first.tables == second.tables);
+        expect_same(first, second);
         EXPECT_EQ(std::memcmp(&first.counts, &second.counts, sizeof(LdcCounters)), 0);
     }
 }
@@ -189,16 +193,16 @@ TEST_F(CubeTest, OverflowsGrowAndAreRedone) {
         // Now there is room: the same again in one go, and triangles that take little of it.
         const Mesh3 shrunk = shrink(c.mesh);
         cube.build(commands());
-        EXPECT_TRUE(look_at(cube).tables == grown.tables);
+        expect_same(look_at(cube), grown);
         commands().upload(cube.triangles.positions, std::span<const vec3>(shrunk.positions));
         cube.build(commands());
         const Built calm = look_at(cube);
         EXPECT_LT(calm.counts.fragments, grown.counts.fragments / 4);
         expect_right(shrunk, calm, Sampling::conservative);
-        EXPECT_TRUE(build(shrunk, c.resolution, Sampling::conservative).tables == calm.tables);
+        expect_same(build(shrunk, c.resolution, Sampling::conservative), calm);
         commands().upload(cube.triangles.positions, std::span<const vec3>(c.mesh.positions));
         cube.build(commands());
-        EXPECT_TRUE(look_at(cube).tables == grown.tables);
+        expect_same(look_at(cube), grown);
         EXPECT_EQ(cube.builder.redone(), redone);
     }
 }

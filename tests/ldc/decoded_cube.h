@@ -3,16 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cpu_raster.h"
 #include "gpu/commands.h"
 
 namespace peelray::test {
 
-/// What the tables hold, as bytes: equal inputs must give equal tables.
+/// What the tables hold. Nodes, lists and the samples of a list lie in the order in which the GPU happened to make them.
 struct Tables {
     std::vector<glm::uvec2> top, samples;
     std::vector<uint32_t> node, voxel, ids;
-    bool operator==(const Tables&) const = default;
+    bool operator==(const Tables&) const = default;  ///< byte for byte
 };
 
 /// All that builds of `size` in all left in the tables.
@@ -30,9 +32,10 @@ class DecodedCube {
     struct Sample {
         glm::uvec3 voxel;
         uint32_t id;
-        glm::uvec2 data;
+        glm::uvec2 data;  ///< without the bit that ends its list
+        bool operator==(const Sample&) const = default;
     };
-    std::vector<Sample> samples;
+    std::vector<Sample> samples;  ///< those of a voxel by id
     std::vector<uint64_t> pairs;  ///< sorted
     uint32_t occupied = 0, nodes = 0, voxels = 0, longest = 0;
 
@@ -126,18 +129,21 @@ class DecodedCube {
         ASSERT_TRUE(any) << "an occupied node without a voxel";
     }
     void decode_list(const glm::uvec3& voxel, uint32_t first) {
+        std::vector<Sample> list;
         for (uint32_t j = first;; j++) {
             ASSERT_LT(j, tables_.ids.size()) << "a list without a last sample";
             ASSERT_FALSE(used_[j]) << "two lists share a sample";
             used_[j] = true;
-            const uint32_t id = tables_.ids[j];
-            ASSERT_TRUE(j == first || tables_.ids[j - 1] < id) << "not sorted by id";
-            samples.push_back({voxel, id, tables_.samples[j]});
-            pairs.push_back(pair_of(body_.grid, voxel, id));
-            if (tables_.samples[j].y >> 30 & 1) {
-                longest = std::max(longest, j - first + 1);
-                return;
-            }
+            const glm::uvec2 data = tables_.samples[j];
+            list.push_back({voxel, tables_.ids[j], {data.x, data.y & ~(1u << 30)}});
+            if (data.y >> 30 & 1) break;
+        }
+        longest = std::max(longest, uint32_t(list.size()));
+        std::sort(list.begin(), list.end(), [](const Sample& a, const Sample& b) { return a.id < b.id; });
+        for (const Sample& sample : list) {
+            ASSERT_TRUE(&sample == &list.front() || (&sample)[-1].id < sample.id) << "a sample stands there twice";
+            samples.push_back(sample);
+            pairs.push_back(pair_of(body_.grid, voxel, sample.id));
         }
     }
 

@@ -1,4 +1,4 @@
-// Rasterises the tiles of large triangles: one workgroup per tile, four pixels per thread.
+// Rasterises the blocks of large triangles: one workgroup per block, up to sixteen pixels per thread.
 #version 460
 #include "common.glsl"
 #include "params.h"
@@ -10,7 +10,7 @@ BUFFER(readonly, 1, uvec3, triangles)
 BUFFER(, 2, LdcCounters, counters)
 BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
-BUFFER(readonly, 5, uvec2, tiles)
+BUFFER(readonly, 5, uvec2, blocks)
 BUFFER(readonly, 6, LdcBody, bodies)
 #define BASE_COLOR_FIRST_BINDING 7
 #include "base_color_buffers.glsl"
@@ -19,30 +19,33 @@ BUFFER(readonly, 6, LdcBody, bodies)
 #include "ldc_projected.glsl"
 
 void main() {
-    const uint tile_count = min(counters[0].tiles, params.tile_capacity);
-    if (GROUP_INDEX >= tile_count) return;
-    const uvec2 tile = tiles[GROUP_INDEX];
-    const uint id = tile.x;
+    if (GROUP_INDEX >= min(counters[0].blocks, params.block_capacity)) return;
+    const uvec2 block = blocks[GROUP_INDEX];
+    const uint id = block.x;
     const LdcPlace place = ldcPlaceOf(ldcBodyOfTriangle(id >> 2u));
     const CubeGrid grid = place.grid;
     const LdcTriangle t = ldcProjected(grid, id);
     const vec3 reach = ldcReach(t);
     ivec2 lo, hi;
     ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), id & 3u)).xy, lo, hi);
-    const ivec2 corner = ivec2(tile.y & 0xffffu, tile.y >> 16u) * 16;
+    const ivec2 corner = ivec2(block.y & 0xffffu, block.y >> 16u) * int(LDC_BLOCK);
+    lo = max(lo, corner);
+    hi = min(hi, corner + int(LDC_BLOCK) - 1);
+    const uint width = uint(hi.x - lo.x + 1), pixels = width * uint(hi.y - lo.y + 1);
     uint count = 0u, covered = 0u;
-    for (uint k = 0u; k < 4u; k++) {
+    for (uint k = 0u; k < LDC_BLOCK * LDC_BLOCK / 64u; k++) {
         const uint j = k * 64u + gl_LocalInvocationIndex;
-        const ivec2 pixel = corner + ivec2(j & 15u, j >> 4u);
-        if (any(lessThan(pixel, lo)) || any(greaterThan(pixel, hi)) || !ldcCovers(t, reach, vec2(pixel) + 0.5, params.sampling)) continue;
+        if (j >= pixels) break;
+        const ivec2 pixel = lo + ivec2(j % width, j / width);
+        if (!ldcCovers(t, reach, vec2(pixel) + 0.5, params.sampling)) continue;
         if (masked && !ldcPresent(grid, id, vec2(pixel) + 0.5)) continue;
         covered |= 1u << k;
         count += ldcEmitPixel(t, pixel, id, place, false, 0u);
     }
     uint position = ldcReserve(count);
-    for (uint k = 0u; k < 4u; k++) {
+    for (uint k = 0u; covered >> k != 0u; k++) {
         if ((covered >> k & 1u) == 0u) continue;
         const uint j = k * 64u + gl_LocalInvocationIndex;
-        position += ldcEmitPixel(t, corner + ivec2(j & 15u, j >> 4u), id, place, true, position);
+        position += ldcEmitPixel(t, lo + ivec2(j % width, j / width), id, place, true, position);
     }
 }
