@@ -395,8 +395,9 @@ struct Frame {
     float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
+    uint draws;         ///< GpuDraw entries
 };
-SHARED_SIZE(Frame, 296);
+SHARED_SIZE(Frame, 300);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
@@ -423,14 +424,38 @@ struct PathNode {
 SHARED_SIZE(PathNode, 44);
 #define NO_CHILD 0xffffffffu
 
-/// Counters of a band: queue lengths by level, then rays by kind.
+/// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
 #define QUEUE_LEVELS 17u
 #define QUEUE_REFLECTION 17u
 #define QUEUE_REFRACTION 18u
 #define QUEUE_SHADOW 19u
 #define QUEUE_AMBIENT 20u
-#define QUEUE_OVERFLOW 21u
-#define QUEUE_COUNTERS 22u
+#define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is done again then
+#define QUEUE_VIEW_BLOCKS 22u  // of large triangles
+#define QUEUE_FINISHED 23u     // workgroups of the pass that runs
+#define QUEUE_COUNTERS 24u
+/// After the counters: three workgroup counts for each level, then of the view's blocks.
+#define QUEUE_GROUPS QUEUE_COUNTERS
+#define QUEUE_WORDS (QUEUE_GROUPS + 3u * (QUEUE_LEVELS + 1u))
+#define OVERFLOW_PATHS 1u  // a level's rays
+#define OVERFLOW_VIEW 2u   // blocks
+
+/// Triangles of a body in all its instances, one after the other.
+struct GpuDraw {
+    uint first_number;  ///< of its drawn triangles, counted over all draws
+    uint first_triangle;
+    uint triangles;  ///< of an instance
+    uint first_instance;
+};
+SHARED_SIZE(GpuDraw, 16);
+
+/// Parameters of the view_* passes.
+struct ViewParams {
+    vec2 jitter;          ///< sample position in the pixel, [0, 1)
+    uint triangles;       ///< drawn, over all instances
+    uint block_capacity;  ///< entries of the queue of blocks of large triangles
+};
+SHARED_SIZE(ViewParams, 16);
 
 struct VisibilityParams {
     vec2 jitter;  ///< sample position in the pixel, [0, 1)

@@ -1,20 +1,23 @@
-// Level 0: camera rays of a band and, from the rasterised triangle indices, where they hit.
+// Level 0: camera rays of a band and, from the triangles that its pixels see, where they hit.
 #version 460
 #include "common.glsl"
 #include "params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool by_number = false;  // see seen.glsl
 PARAMS(LevelParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-BUFFER(readonly, 3, SurfaceId, visibility)
+BUFFER(readonly, 3, uvec2, visibility)
 BUFFER(writeonly, 4, Ray, rays)
 BUFFER(writeonly, 5, RayState, states)
 BUFFER(writeonly, 6, Hit, hits)
 BUFFER(writeonly, 7, uint, queue)
 BUFFER(readonly, 8, GpuInstance, instances)
+BUFFER(readonly, 9, GpuDraw, draws)
 #include "camera.glsl"
 #include "camera_hit.glsl"
+#include "seen.glsl"
 #include "shading.glsl"
 
 void main() {
@@ -28,7 +31,7 @@ void main() {
     Hit hit = Hit(uintBitsToFloat(0x7f800000u), NO_TRIANGLE, 0u, 0.0, 0.0);
     const bool inside = pixel.x < frame[0].width && pixel.y < frame[0].height;
     SurfaceId seen = SurfaceId(0u, NO_TRIANGLE);
-    if (inside) seen = visibility[pixel.y * frame[0].width + pixel.x];
+    if (inside) seen = seenAt(pixel, by_number);
     if (seen.triangle != NO_TRIANGLE) hit = cameraHit(ray, seen);
     hits[i] = hit;
 }

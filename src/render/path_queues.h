@@ -28,6 +28,8 @@ class PathQueues {
     PathLevel& level(uint32_t index) { return levels_[index]; }
     const Buffer& counters() const { return counters_; }
     const Buffer& groups() const { return groups_; }
+    /// Where in the counters the workgroups of a level are counted; level QUEUE_LEVELS: of the view's blocks.
+    static uint64_t groups_offset(uint32_t level) { return (QUEUE_GROUPS + 3ull * level) * 4; }
     const Buffer& readback() const { return readback_; }
     /// A counter (QUEUE_*) of the last finished band.
     uint32_t count(uint32_t counter) const { return reinterpret_cast<const uint32_t*>(readback_.mapped())[counter]; }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "render/compute_view.h"
 #include "render/transforms.h"
 
 namespace peelray {
@@ -64,10 +65,12 @@ struct Renderer::Impl {
     PathQueues queues;
     Commands commands;
     ViewTarget view;
+    ComputeView compute_view;
     Buffer picture, encoded, aov_buffer;
 
     RenderSettings settings;
     HitTest hit = HitTest::exact;
+    bool computes_view = false;
     Frame frame{};
     Box box;  ///< what the settings say, else that of the moment
     uint32_t last_level = 0, band_rows = 0;
@@ -84,7 +87,8 @@ struct Renderer::Impl {
           scene(device, source, assembly, environment),
           queues(device),
           commands(device),
-          view(device) {}
+          view(device),
+          compute_view(device) {}
 
     /// What is left of an assembly when its triangles are on the device.
     static Assembly without_geometry(const Assembly& from) {
@@ -131,9 +135,15 @@ void Renderer::Impl::check_settings() const {
     if (settings.bounces >= QUEUE_LEVELS)
         fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
     if (settings.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+    if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
+        fail("the device '{}' cannot find what pixels see by compute shaders{}: use --visibility raster",
+             device.info().name,
+             device.features.int64_atomics ? fmt::format(" among {} triangles", scene.drawn)
+                                           : ", for it lacks 64-bit atomics");
 }
 
 void Renderer::Impl::prepare_images() {
+    computes_view = settings.visibility != Visibility::raster && ComputeView::possible(device, scene);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     view.resize(device, settings.width, settings.height);
     ensure_size(device, picture, "picture", pixels * 16);
@@ -229,7 +239,10 @@ void Renderer::Impl::build_cubes() {
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
+    if (computes_view)
+        compute_view.record(commands, scene, view, queues, sample_position(sample));
+    else
+        record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -302,7 +315,8 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
-    record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row));
+    if (first_row == 0) record_visibility(sample);
+    record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row), computes_view);
     if (settings.tracer == Tracer::cubemap)
         maps->record_shading(commands, view.frame, queues.level(0), level_params(0, sample, first_row));
     else
@@ -335,11 +349,11 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
         });
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
-            if (row == 0) record_visibility(sample);
             for (;; redone++) {
                 record_band(sample, row);
                 commands.submit();
-                if (queues.finish()) break;
+                const bool seen = !computes_view || row > 0 || compute_view.finish(queues);
+                if (queues.finish() && seen) break;
                 // The counters told how much room is needed; the picture was left alone.
                 if (progress) progress((sample + double(row) / settings.height) / settings.spp);
             }
@@ -366,10 +380,11 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
             "smaller --size",
             settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
-    record_visibility(0);
+    commands.fill(queues.counters(), 0);
+    record_visibility(0);  // it found room before
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
-        record_primary(commands, device, scene, view, queues, p);
+        record_primary(commands, device, scene, view, queues, p, computes_view);
         commands.run(device.pass("aov"),
                      surface_bindings(scene, view.frame,
                                       {{"rays", queues.level(0).rays},
@@ -446,7 +461,9 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.hit = hit;
     stats.choice = cubes->choice();
     stats.scene_bytes = scene.bytes();
-    stats.frame_bytes = queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes();
+    stats.frame_bytes =
+        queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes() + compute_view.bytes();
+    stats.visibility = computes_view ? Visibility::compute : Visibility::raster;
     stats.tracer = settings.tracer;
     stats.moved = moved;
     if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
