@@ -325,7 +325,7 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
-// --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
+// --- A frame (src/render; shaders/view_triangles.comp to accumulate.comp) ---
 
 struct GpuMaterial {
     vec3 base_color;
@@ -413,32 +413,46 @@ SHARED_SIZE(RayState, 20);
 #define MEDIUM_NONE 0x7fffffffu
 #define RAY_SEES_SUN 0x80000000u
 
-/// One hit of the tree of rays below a pixel: its radiance is its own plus that of its children, weighted.
+/// One hit of the tree of rays below a pixel: its radiance is its own, what arrives along its shadow rays and that of
+/// its children, weighted.
 struct PathNode {
     vec3 radiance;
-    uint child0;
-    vec3 weight0;
-    uint child1;
-    vec3 weight1;
+    uint first_light;  ///< entry of the queue of shadow rays
+    uint flags;        ///< NODE_*, and how many entries are its own
 };
-SHARED_SIZE(PathNode, 44);
+SHARED_SIZE(PathNode, 20);
+#define NODE_LIGHTS 0x3fffffffu
+#define NODE_SURFACE 0x40000000u   // not the sky
+#define NODE_BRANCHES 0x80000000u  // it has children
+
+/// The children of a node: places in the next level.
+struct PathBranches {
+    vec3 weight0;
+    uint child0;
+    vec3 weight1;
+    uint child1;
+};
+SHARED_SIZE(PathBranches, 32);
 #define NO_CHILD 0xffffffffu
 
 /// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
 #define QUEUE_LEVELS 17u
 #define QUEUE_REFLECTION 17u
 #define QUEUE_REFRACTION 18u
-#define QUEUE_SHADOW 19u
-#define QUEUE_AMBIENT 20u
+#define QUEUE_LIGHT 19u        // shadow rays, those of the sky's light included
+#define QUEUE_AMBIENT 20u      // of them: the sky's
 #define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is done again then
 #define QUEUE_VIEW_BLOCKS 22u  // of large triangles
 #define QUEUE_FINISHED 23u     // workgroups of the pass that runs
 #define QUEUE_COUNTERS 24u
-/// After the counters: three workgroup counts for each level, then of the view's blocks.
+/// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
-#define QUEUE_WORDS (QUEUE_GROUPS + 3u * (QUEUE_LEVELS + 1u))
+#define QUEUE_GROUPS_VIEW 17u
+#define QUEUE_GROUPS_LIGHT 18u
+#define QUEUE_WORDS (QUEUE_GROUPS + 3u * 19u)
 #define OVERFLOW_PATHS 1u  // a level's rays
 #define OVERFLOW_VIEW 2u   // blocks
+#define OVERFLOW_LIGHT 4u  // shadow rays
 
 /// Triangles of a body in all its instances, one after the other.
 struct GpuDraw {
@@ -469,9 +483,22 @@ struct LevelParams {
     uint next_capacity;  ///< room in the next level's queue
     uint sample_index;
     vec2 jitter;
-    uint first_row;  ///< of the band, a multiple of 8
+    uint first_row;       ///< of the band, a multiple of 8
+    uint light_capacity;  ///< room in the queue of shadow rays
 };
-SHARED_SIZE(LevelParams, 28);
+SHARED_SIZE(LevelParams, 32);
+
+struct AccumulateParams {
+    uint capacity;        ///< level 0's nodes
+    uint next_capacity;   ///< room for nodes of level 1
+    uint light_capacity;  ///< room in the queue of shadow rays
+    uint first_row;       ///< of the band, a multiple of 8
+    uint sample_index;
+    uint last;    ///< 1: the last sample, the picture is encoded
+    float scale;  ///< exposure / samples
+    uint curve;   ///< 0 none, 1 ACES, 2 neutral
+};
+SHARED_SIZE(AccumulateParams, 32);
 
 // --- The baseline: cube maps and shadow maps (src/render/cube_maps, shadow_maps; shaders/cubemap_*, probe_*,
 // shadow_depth) ---
@@ -529,13 +556,6 @@ struct RaySetupParams {
     vec3 upper;
 };
 SHARED_SIZE(RaySetupParams, 24);
-
-struct TonemapParams {
-    uint pixels;
-    float scale;  ///< exposure / samples
-    uint curve;   ///< 0 none, 1 ACES, 2 neutral
-};
-SHARED_SIZE(TonemapParams, 12);
 
 #ifdef __cplusplus
 }  // namespace peelray

@@ -75,5 +75,5 @@ void main() {
             if (entry.y + j < params.block_capacity) blocks[entry.y + j] = uvec2(entry.x, tile.x | tile.y << 16u);
         }
     }
-    if (lane == 0u && isLastGroup()) storeGroups(QUEUE_LEVELS, min(atomicAdd(queue[QUEUE_VIEW_BLOCKS], 0u), params.block_capacity));
+    if (lane == 0u && isLastGroup()) storeGroups(QUEUE_GROUPS_VIEW, min(atomicAdd(queue[QUEUE_VIEW_BLOCKS], 0u), params.block_capacity));
 }

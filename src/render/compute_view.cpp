@@ -8,7 +8,7 @@ namespace peelray {
 namespace {
 
 constexpr uint64_t kBlockBytes = 8;
-constexpr uint32_t kFirstBlocks = 1 << 16;
+constexpr uint64_t kFirstBlocks = 1 << 14, kMostFirstBlocks = 1 << 20;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ bool ComputeView::possible(const Device& device, const GpuScene& scene) {
 
 void ComputeView::record(Commands& commands, const GpuScene& scene, const ViewTarget& target, const PathQueues& queues,
                          const glm::vec2& jitter) {
-    if (capacity_ == 0) capacity_ = kFirstBlocks;
+    if (capacity_ == 0) capacity_ = uint32_t(std::clamp(scene.drawn, kFirstBlocks, kMostFirstBlocks));
     ensure_size(device_, blocks_, "blocks of large triangles", capacity_ * kBlockBytes);
     const Binding own[] = {{"frame", target.frame},
                            {"positions", scene.triangles.positions},
@@ -34,7 +34,7 @@ void ComputeView::record(Commands& commands, const GpuScene& scene, const ViewTa
     commands.fill(target.visibility, ~0u);
     commands.run(device_.pass("view_triangles", {masked}), bindings, p, groups_for(scene.drawn, 256));
     commands.run_indirect(device_.pass("view_blocks", {masked}), bindings, p, queues.counters(),
-                          PathQueues::groups_offset(QUEUE_LEVELS));
+                          PathQueues::groups_offset(QUEUE_GROUPS_VIEW));
 }
 
 bool ComputeView::finish(const PathQueues& queues) {

@@ -21,7 +21,7 @@ enum class Tracer : uint8_t {
 
 /// Who finds what each pixel sees.
 enum class Visibility : uint8_t {
-    automatic,  ///< compute where the device can
+    automatic,  ///< compute where the device can, but for software devices
     compute,    ///< compute shaders, with the camera's rays
     raster,     ///< the graphics pipeline
 };
@@ -37,7 +37,8 @@ struct RenderSettings : PictureSettings {
     CubeLayout layout;         ///< builder, traversal and what belongs to them
     Tracer tracer = Tracer::ldc;
     Visibility visibility = Visibility::automatic;
-    uint32_t repeat = 1;  ///< frames to render; times are medians over them
+    uint32_t repeat = 1;      ///< frames to render; times are medians over them
+    bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
 };
 
 struct RenderStats {

@@ -36,7 +36,6 @@ void record_primary(Commands& commands, Device& device, const GpuScene& scene, c
                   {"rays", level.rays},
                   {"states", level.states},
                   {"hits", level.hits},
-                  {"queue", queues.counters()},
                   {"instances", scene.instances.table()},
                   {"draws", scene.draw_table}},
                  params, groups_for(params.capacity, 64));
