@@ -9,8 +9,9 @@ namespace peelray {
 
 /// What a view is drawn into.
 struct ViewTarget {
-    Buffer frame;       ///< one Frame: the view's constants
-    Buffer visibility;  ///< two uint32 of what each pixel sees, row by row; the second is ~0: nothing (shaders/seen.glsl)
+    Buffer frame;  ///< one Frame: the view's constants
+    Buffer
+        visibility;  ///< two uint32 of what each pixel sees, row by row; the second is ~0: nothing (shaders/seen.glsl)
     Image2D color, depth;
 
     explicit ViewTarget(Device& device) : frame(device, "frame constants", sizeof(Frame)) {}
