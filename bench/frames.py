@@ -44,20 +44,32 @@ def render(program, scene, options, repeat, device, rebuild):
             return json.load(file), None
 
 
+PARTS = ("visibility", "trace", "scatter", "shadow")
+
+
+def part_of(name):
+    """Which of PARTS a pass belongs to."""
+    if name.startswith("view_") or name == "fill visible triangles":
+        return "visibility"
+    return "shadow" if name.startswith("trace_shadow") else name
+
+
 def row(name, stats):
-    passes = {p["name"]: p["ms"] for p in stats["passes"]}
+    passes = {}
+    for p in stats["passes"]:
+        passes[part_of(p["name"])] = passes.get(part_of(p["name"]), 0) + p["ms"]
     rate = stats["mrays_per_second"]
     secondary = stats["rays"]["reflection"] + stats["rays"]["refraction"]
     cells = [name, f'{stats["triangles"]}', f'{stats["ldc"]["n"]}', stats["hit"], f'{stats["build_ms"]:.3f}']
-    for part in ("visibility", "primary", "trace", "scatter", "shadow"):
+    for part in PARTS:
         cells.append(f"{passes.get(part, 0):.3f}")
-    rest = stats["frame_ms"] - stats["build_ms"] - sum(passes.get(p, 0) for p in ("visibility", "primary", "trace", "scatter", "shadow"))
+    rest = stats["frame_ms"] - stats["build_ms"] - sum(passes.get(p, 0) for p in PARTS)
     cells += [f"{rest:.3f}", f'{stats["frame_ms"]:.3f}', f"{secondary / 1e6:.2f}", f'{rate["reflection_and_refraction"] or 0:.0f}',
               f'{stats["rays"]["shadow"] / 1e6:.2f}', f'{stats["ldc"]["bytes"] / 2**20:.1f}', f'{stats["memory_bytes"]["build_scratch"] / 2**20:.1f}']
     return "| " + " | ".join(cells) + " |"
 
 
-HEAD = ("| scene | triangles | N | hits | build | visibility | primary | trace | scatter | shadow | rest | frame | M secondary | Mrays/s | M shadow "
+HEAD = ("| scene | triangles | N | hits | build | visibility | trace | scatter | shadow | rest | frame | M secondary | Mrays/s | M shadow "
         "| cube MiB | scratch MiB |\n|" + "---|" * 17)
 
 

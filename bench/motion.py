@@ -41,7 +41,9 @@ def parts(frame):
             times[group] += entry["ms"]
         elif name in ("visibility", "trace"):
             times[name] += entry["ms"]
-        elif name in ("scatter", "shadow"):
+        elif name.startswith("view_") or name == "fill visible triangles":
+            times["visibility"] += entry["ms"]
+        elif name == "scatter" or name.startswith("trace_shadow"):
             times["shade"] += entry["ms"]
     times["frame"] = frame["frame_ms"]
     return times

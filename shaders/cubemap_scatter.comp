@@ -66,5 +66,5 @@ void main() {
         if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
         radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
     }
-    nodes[i] = PathNode(radiance, NO_CHILD, vec3(0), NO_CHILD, vec3(0));
+    nodes[i] = PathNode(radiance, 0u, hit.triangle != NO_TRIANGLE ? NODE_SURFACE : 0u);
 }

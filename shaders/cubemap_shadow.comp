@@ -19,23 +19,31 @@ BUFFER(readonly, 17, float, shadow_depths)
 #include "frame.glsl"
 #include "lighting.glsl"
 
-vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from) {
+/// Share of the light that arrives from light `index`, which lies in `direction`.
+float lampShare(uint index, Surface s, vec3 direction) {
+    if ((frame[0].effects & EFFECT_SHADOW) == 0u) return 1.0;
     uint face = 6u * index;
     if (shadow_maps[face + 1u].size != 0u) {
         vec2 unused;
         face += cubeFace(s.shadow_start - lights[index].position, unused);
     }
-    return vec3(shadowMapShare(shadow_maps[face], s.shadow_start, s.geometric, direction));
+    return shadowMapShare(shadow_maps[face], s.shadow_start, s.geometric, direction);
 }
-
-vec3 skyVisibility(Surface s, uint seed, SurfaceId from) { return vec3(1); }
 
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= params.capacity) return;
     const Hit hit = hits[i];
     if (hit.triangle == NO_TRIANGLE) return;
-    const vec3 direction = rays[i].direction;
-    const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), direction);
-    nodes[i].radiance += lightSurface(s, SurfaceId(hit.instance, hit.triangle), -direction, 0u);
+    const vec3 view = -rays[i].direction;
+    const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), -view);
+    const GpuMaterial m = materials[s.material];
+    if ((m.flags & MATERIAL_UNLIT) != 0u) return;
+    vec3 sum = skyLight(s, m, view);
+    for (uint k = 0u; k < frame[0].lights; k++) {
+        vec3 direction;
+        const vec3 light = lampLight(k, s, m, view, direction);
+        if (light != vec3(0)) sum += light * lampShare(k, s, direction);
+    }
+    nodes[i].radiance += sum;
 }

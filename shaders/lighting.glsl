@@ -2,12 +2,6 @@
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
-// Defined by the shader that includes this: shares of light that arrive.
-/// From light `index`, which lies in `direction`.
-vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from);
-/// From the sky, in the mean over the samples.
-vec3 skyVisibility(Surface s, uint seed, SurfaceId from);
-
 /// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
 vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
     distance = uintBitsToFloat(0x7f800000u);
@@ -44,34 +38,23 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
     return result * n_l;
 }
 
-/// Light from the lamps, the sun and the diffuse sky that a surface sends towards `view`.
-vec3 lightSurface(Surface s, SurfaceId from, vec3 view, uint seed) {
-    const GpuMaterial m = materials[s.material];
-    if ((m.flags & MATERIAL_UNLIT) != 0u) return vec3(0);
-    const bool shadows = (frame[0].effects & EFFECT_SHADOW) != 0u;
-    vec3 sum = vec3(0);
-    for (uint i = 0u; i < frame[0].lights; i++) {
-        vec3 direction;
-        float distance;
-        const vec3 light = lightAt(lights[i], s.position, direction, distance);
-        if (dot(s.geometric, direction) <= 0.0 || light == vec3(0)) continue;
-        const vec3 reflected = light * reflectance(s, m, view, direction);
-        if (reflected == vec3(0)) continue;
-        if (!shadows) {
-            sum += reflected;
-            continue;
-        }
-        sum += reflected * lightVisibility(i, s, direction, from);
-    }
+/// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light.
+vec3 lampLight(uint index, Surface s, GpuMaterial m, vec3 view, out vec3 direction) {
+    float distance;
+    const vec3 light = lightAt(lights[index], s.position, direction, distance);
+    if (dot(s.geometric, direction) <= 0.0 || light == vec3(0)) return vec3(0);
+    return light * reflectance(s, m, view, direction);
+}
+
+/// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it.
+vec3 skyLight(Surface s, GpuMaterial m, vec3 view) {
     vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
-    if (diffuse == vec3(0)) return sum;
+    if (diffuse == vec3(0)) return vec3(0);
     // What the surface mirrors does not reach its body: the share that scatter.comp gives to the reflection.
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
     diffuse *= 1.0 - (m.roughness < MIRROR_ROUGHNESS ? vec3(fresnelDielectric(cosine, m.ior))
                                                      : environmentBrdf(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), m.roughness, cosine));
-    vec3 ambient = environmentIrradiance(s.normal);
-    if ((frame[0].effects & EFFECT_AMBIENT) != 0u) ambient *= skyVisibility(s, seed, from);
-    return sum + diffuse * ambient;
+    return diffuse * environmentIrradiance(s.normal);
 }
 
 #endif

@@ -323,7 +323,7 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
-// --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
+// --- A frame (src/render; shaders/view_triangles.comp to accumulate.comp) ---
 
 struct GpuMaterial {
     vec3 base_color;
@@ -393,8 +393,9 @@ struct Frame {
     float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
+    uint draws;         ///< GpuDraw entries
 };
-SHARED_SIZE(Frame, 296);
+SHARED_SIZE(Frame, 300);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
@@ -410,25 +411,63 @@ SHARED_SIZE(RayState, 20);
 #define MEDIUM_NONE 0x7fffffffu
 #define RAY_SEES_SUN 0x80000000u
 
-/// One hit of the tree of rays below a pixel: its radiance is its own plus that of its children, weighted.
+/// One hit of the tree of rays below a pixel: its radiance is its own, what arrives along its shadow rays and that of
+/// its children, weighted.
 struct PathNode {
     vec3 radiance;
-    uint child0;
-    vec3 weight0;
-    uint child1;
-    vec3 weight1;
+    uint first_light;  ///< entry of the queue of shadow rays
+    uint flags;        ///< NODE_*, and how many entries are its own
 };
-SHARED_SIZE(PathNode, 44);
+SHARED_SIZE(PathNode, 20);
+#define NODE_LIGHTS 0x3fffffffu
+#define NODE_SURFACE 0x40000000u   // not the sky
+#define NODE_BRANCHES 0x80000000u  // it has children
+
+/// The children of a node: places in the next level.
+struct PathBranches {
+    vec3 weight0;
+    uint child0;
+    vec3 weight1;
+    uint child1;
+};
+SHARED_SIZE(PathBranches, 32);
 #define NO_CHILD 0xffffffffu
 
-/// Counters of a band: queue lengths by level, then rays by kind.
+/// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
 #define QUEUE_LEVELS 17u
 #define QUEUE_REFLECTION 17u
 #define QUEUE_REFRACTION 18u
-#define QUEUE_SHADOW 19u
-#define QUEUE_AMBIENT 20u
-#define QUEUE_OVERFLOW 21u
-#define QUEUE_COUNTERS 22u
+#define QUEUE_LIGHT 19u        // shadow rays, those of the sky's light included
+#define QUEUE_AMBIENT 20u      // of them: the sky's
+#define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is done again then
+#define QUEUE_VIEW_BLOCKS 22u  // of large triangles
+#define QUEUE_FINISHED 23u     // workgroups of the pass that runs
+#define QUEUE_COUNTERS 24u
+/// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
+#define QUEUE_GROUPS QUEUE_COUNTERS
+#define QUEUE_GROUPS_VIEW 17u
+#define QUEUE_GROUPS_LIGHT 18u
+#define QUEUE_WORDS (QUEUE_GROUPS + 3u * 19u)
+#define OVERFLOW_PATHS 1u  // a level's rays
+#define OVERFLOW_VIEW 2u   // blocks
+#define OVERFLOW_LIGHT 4u  // shadow rays
+
+/// Triangles of a body in all its instances, one after the other.
+struct GpuDraw {
+    uint first_number;  ///< of its drawn triangles, counted over all draws
+    uint first_triangle;
+    uint triangles;  ///< of an instance
+    uint first_instance;
+};
+SHARED_SIZE(GpuDraw, 16);
+
+/// Parameters of the view_* passes.
+struct ViewParams {
+    vec2 jitter;          ///< sample position in the pixel, [0, 1)
+    uint triangles;       ///< drawn, over all instances
+    uint block_capacity;  ///< entries of the queue of blocks of large triangles
+};
+SHARED_SIZE(ViewParams, 16);
 
 struct VisibilityParams {
     vec2 jitter;  ///< sample position in the pixel, [0, 1)
@@ -442,9 +481,22 @@ struct LevelParams {
     uint next_capacity;  ///< room in the next level's queue
     uint sample_index;
     vec2 jitter;
-    uint first_row;  ///< of the band, a multiple of 8
+    uint first_row;       ///< of the band, a multiple of 8
+    uint light_capacity;  ///< room in the queue of shadow rays
 };
-SHARED_SIZE(LevelParams, 28);
+SHARED_SIZE(LevelParams, 32);
+
+struct AccumulateParams {
+    uint capacity;        ///< level 0's nodes
+    uint next_capacity;   ///< room for nodes of level 1
+    uint light_capacity;  ///< room in the queue of shadow rays
+    uint first_row;       ///< of the band, a multiple of 8
+    uint sample_index;
+    uint last;    ///< 1: the last sample, the picture is encoded
+    float scale;  ///< exposure / samples
+    uint curve;   ///< 0 none, 1 ACES, 2 neutral
+};
+SHARED_SIZE(AccumulateParams, 32);
 
 // --- The baseline: cube maps and shadow maps (src/render/cube_maps, shadow_maps; shaders/cubemap_*, probe_*,
 // shadow_depth) ---
@@ -502,13 +554,6 @@ struct RaySetupParams {
     vec3 upper;
 };
 SHARED_SIZE(RaySetupParams, 24);
-
-struct TonemapParams {
-    uint pixels;
-    float scale;  ///< exposure / samples
-    uint curve;   ///< 0 none, 1 ACES, 2 neutral
-};
-SHARED_SIZE(TonemapParams, 12);
 
 #ifdef __cplusplus
 }  // namespace peelray

@@ -1,34 +1,34 @@
-// Level 0: camera rays of a band and, from the rasterised triangle indices, where they hit.
+// Camera rays of a band and, from the triangles that its pixels see, where they hit: for the passes that want them in buffers. The
+// frame itself does without (scatter.comp).
 #version 460
 #include "common.glsl"
 #include "params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool by_number = false;  // see seen.glsl
 PARAMS(LevelParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)
-BUFFER(readonly, 3, SurfaceId, visibility)
+BUFFER(readonly, 3, uvec2, visibility)
 BUFFER(writeonly, 4, Ray, rays)
 BUFFER(writeonly, 5, RayState, states)
 BUFFER(writeonly, 6, Hit, hits)
-BUFFER(writeonly, 7, uint, queue)
-BUFFER(readonly, 8, GpuInstance, instances)
+BUFFER(readonly, 7, GpuInstance, instances)
+BUFFER(readonly, 8, GpuDraw, draws)
 #include "camera.glsl"
 #include "camera_hit.glsl"
+#include "seen.glsl"
 #include "shading.glsl"
+#include "camera_start.glsl"
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i == 0u) queue[0] = params.capacity;
     if (i >= params.capacity) return;
-    const uvec2 pixel = recordPixel(i, params.first_row);
-    const Ray ray = cameraRay(vec2(pixel) + params.jitter);
+    Ray ray;
+    RayState state;
+    Hit hit;
+    cameraStart(recordPixel(i, params.first_row), params.jitter, by_number, ray, state, hit);
     rays[i] = ray;
-    states[i] = RayState(vec3(1), MEDIUM_NONE | RAY_SEES_SUN, hash3(uvec3(pixel, 0u)).x);
-    Hit hit = Hit(uintBitsToFloat(0x7f800000u), NO_TRIANGLE, 0u, 0.0, 0.0);
-    const bool inside = pixel.x < frame[0].width && pixel.y < frame[0].height;
-    SurfaceId seen = SurfaceId(0u, NO_TRIANGLE);
-    if (inside) seen = visibility[pixel.y * frame[0].width + pixel.x];
-    if (seen.triangle != NO_TRIANGLE) hit = cameraHit(ray, seen);
+    states[i] = state;
     hits[i] = hit;
 }

@@ -74,6 +74,7 @@ Json settings_of(const RenderArguments& a, const Sequence& sequence, const Prepa
             {"--batch", t.batch},
             {"--depth", text(std::optional(t.depth))},
             {"--rebuild", flag(a.rebuild)},
+            {"--visibility", a.visibility},
             {"--aov", list(a.aovs, all_aov_names())}};
 }
 

@@ -195,6 +195,11 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
     if (!compares) add_choice(app, "--hit", a.tracing.hit, kHits, kHitHelp)->group("Tracing");
     add_tracing_options(app, a.tracing);
 
+    add_choice(
+        app, "--visibility", a.visibility, {"auto", "compute", "raster"},
+        "who finds what each pixel sees: compute shaders, or the graphics pipeline; auto: compute, where the device "
+        "has 64-bit atomics and is no software")
+        ->group("Tracing");
     add_number<uint32_t>(app, "--repeat", a.repeat,
                          "for measuring: 2 or more frames after a first one that warms up; times are medians")
         ->default_str("1")

@@ -171,6 +171,9 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.spp = a.spp;
     settings.repeat = a.repeat;
     settings.rebuild = a.rebuild;
+    settings.visibility = a.visibility == "compute"  ? Visibility::compute
+                          : a.visibility == "raster" ? Visibility::raster
+                                                     : Visibility::automatic;
     settings.exposure = a.exposure;
     settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
     settings.reflection = has("reflection");

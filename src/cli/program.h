@@ -42,6 +42,7 @@ struct PictureArguments {
     std::optional<glm::vec3> eye, look, up, background;
     std::optional<float> fov;  ///< degrees
     bool sky = false, floor = false, rebuild = false;
+    std::string visibility = "auto";
     std::string material, tonemap = "neutral";
     std::vector<std::string> effects = {"reflection", "refraction", "shadow"};
     float exposure = 0;

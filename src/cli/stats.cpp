@@ -126,14 +126,14 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     double trace_ms = 0, shadow_ms = 0;
     for (const auto& pass : s.passes) {
         json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
-        if (pass.name.starts_with("trace")) trace_ms = pass.ms;
-        if (pass.name == "shadow") shadow_ms = pass.ms;
+        if (pass.name == "trace" || pass.name == "trace_four") trace_ms = pass.ms;
+        if (pass.name.starts_with("trace_shadow")) shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
     json["rays"] = ray_stats(result.rays);
     json["mrays_per_second"] = {
         {"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
-        {"shadow_and_ambient_with_shading", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
+        {"shadow_and_ambient", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
     if (s.cubes.bodies) {
         json["ldc"] = cube_stats(s.cubes, s.bodies, s.shown, box, s.choice);
         json["moved"] = {{"cubes_rebuilt", s.rebuilt},
@@ -141,6 +141,7 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
                          {"instances_transformed", s.moved}};
     }
     if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
+    json["visibility"] = s.visibility == Visibility::compute ? "compute" : "raster";
     json["hit"] = s.cubes.bodies ? name_of(s.hit) : "none";
     json["memory_bytes"] = {{"scene", s.scene_bytes},
                             {"cube", s.cubes.bytes},

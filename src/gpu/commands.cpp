@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <utility>
 
 #include "base/error.h"
@@ -14,7 +13,16 @@ constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
 constexpr uint32_t kTimersPerPool = 512;
 constexpr VkPipelineStageFlags2 kWork = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
                                         VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+// Indirect arguments are read in a stage of their own.
+constexpr VkPipelineStageFlags2 kCompute =
+    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+constexpr VkPipelineStageFlags2 kGraphics = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace
 
@@ -47,7 +55,11 @@ void Commands::begin() {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     check_vulkan(device_.vk.vkBeginCommandBuffer(commands_, &info), "recording commands");
-    barrier_if(true);  // earlier submissions' writes
+    stages_ = kWork;  // earlier submissions' writes
+    barrier();
+    stages_ = 0;
+    if (!time_passes_) whole_timer_ = start_timer("all passes");
+    if (!time_passes_ && !whole_start_) whole_start_ = std::chrono::steady_clock::now();
 }
 
 void Commands::touch(uint64_t handle, bool reads, bool writes, bool& hazard) {
@@ -73,12 +85,19 @@ void Commands::touch(const Image2D& image, bool writes, bool fresh, VkImageLayou
     image.layout = layout;
 }
 
-void Commands::barrier_if(bool hazard) {
-    if (!hazard) return;
+void Commands::barrier_if(bool hazard, VkPipelineStageFlags2 stages) {
+    // A barrier is no wider than what is recorded, so that compute passes wait for compute alone: stages that come in
+    // later were in none of the barriers so far.
+    const bool late = stages_ != 0 && (stages_ & stages) != stages;
+    stages_ |= stages;
+    if (hazard || late) barrier();
+}
+
+void Commands::barrier() {
     VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = kWork;
+    barrier.srcStageMask = stages_;
     barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.dstStageMask = kWork;
+    barrier.dstStageMask = stages_;
     barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     info.memoryBarrierCount = 1;
@@ -181,7 +200,7 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     bool hazard = false;
     const VkDescriptorSet set = bind(pass, bindings, hazard);
     if (arguments) touch(*arguments, true, false, hazard);
-    barrier_if(hazard);
+    barrier_if(hazard, kCompute);
     mark(bindings, pass);
     if (arguments) access(*arguments).read = true;
 
@@ -214,7 +233,7 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     if (targets.depth) touch(*targets.depth, true, true, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, hazard);
     if (indirect) touch(indirect->arguments, true, false, hazard);
     if (copied) touch(*copied, false, true, hazard);
-    barrier_if(hazard);
+    barrier_if(hazard, kGraphics);
     mark(bindings, pass);
     for (const Image2D* color : targets.colors) access(*color).written = true;
     if (targets.depth) access(*targets.depth).written = true;
@@ -244,7 +263,7 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
         const Image2D& color = *targets.colors[0];
         bool wait = false;
         touch(color, false, false, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, wait);
-        barrier_if(wait);
+        barrier_if(wait, kTransfer);
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         region.imageExtent = {color.width(), color.height(), 1};
@@ -296,7 +315,7 @@ void Commands::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint6
     begin();
     bool hazard = false;
     touch(buffer, false, true, hazard);
-    barrier_if(hazard);
+    barrier_if(hazard, kTransfer);
     access(buffer).written = true;
     begin_timer("fill " + buffer.name());
     device_.vk.vkCmdFillBuffer(commands_, buffer.handle(), offset, bytes == ~0ull ? VK_WHOLE_SIZE : bytes, value);
@@ -308,7 +327,7 @@ void Commands::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
     bool hazard = false;
     touch(from, true, false, hazard);
     touch(to, false, true, hazard);
-    barrier_if(hazard);
+    barrier_if(hazard, kTransfer);
     access(from).read = true;
     access(to).written = true;
     const VkBufferCopy region{from_offset, to_offset, bytes};
@@ -330,18 +349,35 @@ void Commands::begin_group(const std::string& name) {
     assert(group_.empty());
     group_ = name;
     label(name);
+    if (time_passes_) return;
+    if (device_.immediate) {
+        flush();
+        group_start_ = std::chrono::steady_clock::now();
+        return;
+    }
+    group_timer_ = start_timer("all");
 }
 
 void Commands::end_group() {
+    if (!time_passes_ && device_.immediate && device_.timestamp_period() > 0) {
+        flush();
+        host_times_.push_back({group_ + "/all", milliseconds_since(group_start_)});
+    } else if (!time_passes_) {
+        stop_timer(group_timer_);
+    }
     group_.clear();
     end_label();
 }
 
 void Commands::begin_timer(const std::string& name) {
-    if (device_.timestamp_period() == 0) return;
+    if (time_passes_) start_timer(name);
+}
+
+size_t Commands::start_timer(const std::string& name) {
     const size_t index = timed_.size();
+    if (device_.timestamp_period() == 0) return index;
     timed_.push_back(group_.empty() ? name : group_ + "/" + name);
-    if (device_.immediate) return;
+    if (device_.immediate) return index;
     if (index / kTimersPerPool == query_pools_.size()) {
         VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
         info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -354,19 +390,23 @@ void Commands::begin_timer(const std::string& name) {
     const uint32_t query = uint32_t(2 * (index % kTimersPerPool));
     device_.vk.vkResetQueryPool(device_.handle, pool, query, 2);
     device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool, query);
+    return index;
 }
 
 void Commands::end_timer() {
-    if (device_.timestamp_period() == 0) return;
+    if (device_.timestamp_period() == 0 || !time_passes_) return;
     if (device_.immediate) {
         const std::string name = timed_.back();
         const auto start = std::chrono::steady_clock::now();
         flush();
-        host_times_.push_back(
-            {name, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
+        host_times_.push_back({name, milliseconds_since(start)});
         return;
     }
-    const size_t index = timed_.size() - 1;
+    stop_timer(timed_.size() - 1);
+}
+
+void Commands::stop_timer(size_t index) {
+    if (device_.timestamp_period() == 0 || device_.immediate) return;
     device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                     query_pools_[index / kTimersPerPool], uint32_t(2 * (index % kTimersPerPool) + 1));
 }
@@ -382,7 +422,7 @@ void Commands::read_times() {
                      "reading timestamps");
         times_.push_back({timed_[i], double(ticks[1] - ticks[0]) * device_.timestamp_period() * 1e-6});
         if (i == 0) first = ticks[0];
-        elapsed_ms_ = double(ticks[1] - first) * device_.timestamp_period() * 1e-6;
+        elapsed_ms_ = std::max(elapsed_ms_, double(ticks[1] - first) * device_.timestamp_period() * 1e-6);
     }
 }
 
@@ -392,7 +432,13 @@ void Commands::submit() {
         times_ = std::exchange(host_times_, {});
         elapsed_ms_ = 0;
         for (const PassTime& time : times_) elapsed_ms_ += time.ms;
+        if (!time_passes_ && whole_start_ && device_.timestamp_period() > 0) {
+            elapsed_ms_ = milliseconds_since(*whole_start_);
+            times_.push_back({"all passes", elapsed_ms_});
+        }
+        whole_start_.reset();
     } else if (recording_) {
+        if (!time_passes_) stop_timer(whole_timer_);
         flush();
         read_times();
     }

@@ -1,8 +1,10 @@
 // Recording and running work: the one place where barriers, debug labels and timestamps come from.
 #pragma once
 
+#include <chrono>
 #include <cstring>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -121,6 +123,10 @@ class Commands {
     void begin_group(const std::string& name);
     void end_group();
 
+    /// Times each pass, as it is at first, or only groups (as "group/all") and whole submissions ("all passes"): the
+    /// passes then need not wait for timestamps. To be called while nothing is recorded.
+    void time_passes(bool on) { time_passes_ = on; }
+
     /// Submits and waits. The recording is then empty again and can be filled anew.
     void submit();
 
@@ -158,7 +164,10 @@ class Commands {
     void touch(const Image2D& image, bool writes, bool fresh, VkImageLayout layout, bool& hazard);
     Access& access(const Buffer& buffer) { return accesses_[uint64_t(buffer.handle())]; }
     Access& access(const Image2D& image) { return accesses_[uint64_t(image.handle())]; }
-    void barrier_if(bool hazard);
+    /// Before a command of these stages: a barrier if there is a hazard, or if such stages have not been in any
+    /// barrier.
+    void barrier_if(bool hazard, VkPipelineStageFlags2 stages);
+    void barrier();
     VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
     void mark(std::span<const Binding> bindings, const PassBase& pass);
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
@@ -169,6 +178,8 @@ class Commands {
     void begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer);
     void begin_timer(const std::string& name);
     void end_timer();
+    size_t start_timer(const std::string& name);
+    void stop_timer(size_t index);
     void label(const std::string& name);
     void end_label();
     void flush();
@@ -182,12 +193,17 @@ class Commands {
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkFence fence_ = VK_NULL_HANDLE;
     bool recording_ = false;
+    VkPipelineStageFlags2 stages_ = 0;  ///< of what is recorded so far
     std::vector<VkDescriptorPool> set_pools_;
     size_t set_pool_ = 0;
     std::vector<VkQueryPool> query_pools_;
     std::vector<std::string> timed_;
     std::vector<PassTime> times_, host_times_;
     double elapsed_ms_ = 0;
+    bool time_passes_ = true;
+    size_t whole_timer_ = 0, group_timer_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> whole_start_;  ///< on the host, where passes are timed there
+    std::chrono::steady_clock::time_point group_start_;
     std::string group_;
     std::unordered_map<uint64_t, Access> accesses_;
     std::vector<VkImageMemoryBarrier2> transitions_;  ///< of the next barrier

@@ -34,7 +34,8 @@ bool extension_available(VkPhysicalDevice device, const char* name) {
 constexpr float kLeastOverestimation = 1.0f / 64;
 
 /// Reads what the device offers and sets in `on` what of it is used.
-DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures& on) {
+DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures& on,
+                                 VkPhysicalDeviceVulkan12Features& on_v12) {
     VkPhysicalDeviceConservativeRasterizationPropertiesEXT conservative{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CONSERVATIVE_RASTERIZATION_PROPERTIES_EXT};
     VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
@@ -42,8 +43,10 @@ DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatur
     const bool has_conservative = extension_available(device, VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);
     if (has_conservative) subgroups.pNext = &conservative;
     vkGetPhysicalDeviceProperties2(device, &properties);
-    VkPhysicalDeviceFeatures offered;
-    vkGetPhysicalDeviceFeatures(device, &offered);
+    VkPhysicalDeviceVulkan12Features offered_v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &offered_v12};
+    vkGetPhysicalDeviceFeatures2(device, &all);
+    const VkPhysicalDeviceFeatures& offered = all.features;
 
     DeviceFeatures features;
     on.geometryShader = offered.geometryShader;
@@ -54,6 +57,8 @@ DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatur
     features.tessellation_shader = on.tessellationShader == VK_TRUE;
     features.fragment_stores = on.fragmentStoresAndAtomics == VK_TRUE;
     features.first_instance = on.drawIndirectFirstInstance == VK_TRUE;
+    features.int64_atomics = offered.shaderInt64 && offered_v12.shaderBufferInt64Atomics;
+    on.shaderInt64 = on_v12.shaderBufferInt64Atomics = features.int64_atomics;
     const VkSubgroupFeatureFlags wanted =
         VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
     features.fragment_subgroups = (subgroups.supportedStages & VK_SHADER_STAGE_FRAGMENT_BIT) &&
@@ -135,7 +140,7 @@ void Device::create_logical(bool validate) {
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue_info;
     VkPhysicalDeviceFeatures optional{};
-    features = optional_features(physical, optional);
+    features = optional_features(physical, optional, v12);
     info.pEnabledFeatures = &optional;
     std::vector<const char*> extensions;
     if (features.overestimation > 0) extensions.push_back(VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);

@@ -49,6 +49,12 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly,
       deformer_(device, scene, assembly),
       generators_(device, scene, assembly) {
     Commands commands(device);
+    std::vector<GpuDraw> table;
+    for (const DrawRange& draw : draws) {
+        table.push_back({uint32_t(drawn), draw.first_triangle, draw.triangles, draw.first_instance});
+        drawn += uint64_t(draw.triangles) * draw.instances;
+    }
+    draw_table = upload(device, commands, "draws", table);
     normals = upload(device, commands, "vertex normals", assembly.normals);
     base_colors = upload_base_colors(device, commands, scene, assembly);
     if (has_masks(scene, assembly.materials)) triangles.masks = &base_colors;
@@ -105,13 +111,14 @@ void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
 uint64_t GpuScene::bytes() const {
     uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
     for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
-                                 &lights, &environment})
+                                 &lights, &environment, &draw_table})
         sum += buffer->bytes();
     return sum;
 }
 
 void GpuScene::describe(Frame& frame) const {
     frame.tree = instances.tree();
+    frame.draws = uint32_t(draws.size());
     frame.lights = uint32_t(light_list.size());
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;

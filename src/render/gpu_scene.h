@@ -25,6 +25,8 @@ class GpuScene {
     std::vector<GpuLight> light_list;  ///< what `lights` holds
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body
+    Buffer draw_table;             ///< the same, GpuDraw each
+    uint64_t drawn = 0;            ///< triangles of all draws; draw_table is right up to 2^32
 
     /// Takes on the moment that `scene` is in: transforms, joints, weights, lights, what is generated. Returns how many
     /// instances moved; those that are placed on the device all count.

@@ -1,4 +1,5 @@
-// The buffers of the tree of rays below a band of pixels: one set per level (bounce).
+// The buffers of the tree of rays below a band of pixels: one set per level (bounce), and the queue of the shadow rays
+// of all levels.
 #pragma once
 
 #include <vector>
@@ -11,23 +12,44 @@ namespace peelray {
 /// A level's rays, their hits and the tree's nodes; entry i of each belongs to the same ray.
 struct PathLevel {
     uint32_t capacity = 0;
-    Buffer rays, states, skip, hits, nodes;
+    Buffer rays, states, skip, hits;  ///< of level 0 only where they are kept (PathQueues::keep_camera_rays)
+    Buffer nodes, branches;
 };
 
-/// Makes room on demand: level 0 for a band's pixels, deeper levels by what the last band needed.
+/// Shadow rays; those of a node follow each other.
+struct LightQueue {
+    uint32_t capacity = 0;
+    Buffer rays, skip;
+    Buffer light;  ///< vec3 each: what arrives along the ray; before it is traced, what may
+};
+
+/// Makes room on demand: level 0 for a band's pixels, the others by what the last band needed.
 class PathQueues {
   public:
     explicit PathQueues(Device& device);
 
-    /// Room for `pixels` camera rays and `levels` levels in all; `branching`: hits may start two rays.
-    void prepare(uint32_t pixels, uint32_t levels, bool branching);
+    /// Room for `pixels` camera rays and `levels` levels in all; `branching`: hits may start two rays. `lights`: shadow
+    /// rays that a hit may start.
+    void prepare(uint32_t pixels, uint32_t levels, bool branching, uint32_t lights);
+
+    /// Room for level 0's rays and hits, for passes that want them in buffers.
+    void keep_camera_rays();
 
     /// Reads the counters of a finished submission; true if every queue fitted, else the queues have grown.
     bool finish();
 
+    /// The last band needed more shadow rays than one queue holds: its successor must be lower.
+    bool crowded() const { return count(QUEUE_LIGHT) > most_lights_; }
+
+    /// Shadow rays that one queue holds.
+    uint32_t most_lights() const { return most_lights_; }
+
     PathLevel& level(uint32_t index) { return levels_[index]; }
+    const LightQueue& lights() const { return lights_; }
+    /// QUEUE_WORDS counters, to be cleared for each band.
     const Buffer& counters() const { return counters_; }
-    const Buffer& groups() const { return groups_; }
+    /// Where in the counters the workgroups of a level are, or those of QUEUE_GROUPS_*.
+    static uint64_t groups_offset(uint32_t level) { return (QUEUE_GROUPS + 3ull * level) * 4; }
     const Buffer& readback() const { return readback_; }
     /// A counter (QUEUE_*) of the last finished band.
     uint32_t count(uint32_t counter) const { return reinterpret_cast<const uint32_t*>(readback_.mapped())[counter]; }
@@ -35,10 +57,13 @@ class PathQueues {
 
   private:
     void allocate(PathLevel& level, uint32_t index, uint32_t capacity);
+    void allocate_lights(uint64_t capacity);
 
     Device& device_;
     std::vector<PathLevel> levels_;
-    Buffer counters_, readback_, groups_;
+    LightQueue lights_;
+    uint32_t most_lights_;
+    Buffer counters_, readback_;
 };
 
 }  // namespace peelray

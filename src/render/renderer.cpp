@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "render/compute_view.h"
 #include "render/transforms.h"
 
 namespace peelray {
@@ -64,10 +65,13 @@ struct Renderer::Impl {
     PathQueues queues;
     Commands commands;
     ViewTarget view;
+    ComputeView compute_view;
     Buffer picture, encoded, aov_buffer;
 
     RenderSettings settings;
     HitTest hit = HitTest::exact;
+    bool computes_view = false;
+    bool build_fits = false;  ///< the cubes of this moment have been built before: it is known that they find room
     Frame frame{};
     Box box;  ///< what the settings say, else that of the moment
     uint32_t last_level = 0, band_rows = 0;
@@ -84,7 +88,8 @@ struct Renderer::Impl {
           scene(device, source, assembly, environment),
           queues(device),
           commands(device),
-          view(device) {}
+          view(device),
+          compute_view(device) {}
 
     /// What is left of an assembly when its triangles are on the device.
     static Assembly without_geometry(const Assembly& from) {
@@ -108,8 +113,10 @@ struct Renderer::Impl {
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
     void record_levels(uint32_t sample, uint32_t first_row);
     void record_scatter(const LevelParams& p);
-    void record_shadow(const LevelParams& p);
+    uint32_t lights_per_hit() const;
+    void record_shadows();
     void record_band(uint32_t sample, uint32_t first_row);
+    bool finish_band(uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
     void render_ray_setup(Aovs& aovs);
@@ -131,9 +138,16 @@ void Renderer::Impl::check_settings() const {
     if (settings.bounces >= QUEUE_LEVELS)
         fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
     if (settings.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+    if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
+        fail("the device '{}' cannot find what pixels see by compute shaders{}: use --visibility raster",
+             device.info().name,
+             device.features.int64_atomics ? fmt::format(" among {} triangles", scene.drawn)
+                                           : ", for it lacks 64-bit atomics");
 }
 
 void Renderer::Impl::prepare_images() {
+    computes_view = settings.visibility == Visibility::compute ||
+                    (settings.visibility == Visibility::automatic && ComputeView::preferable(device, scene));
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     view.resize(device, settings.width, settings.height);
     ensure_size(device, picture, "picture", pixels * 16);
@@ -149,6 +163,7 @@ void Renderer::Impl::prepare_cubes() {
     if (settings.tracer != Tracer::ldc && choice.hit == HitTest::tolerance) choice.hit = HitTest::planar;
     hit = choice.hit;
     if (cubes && cubes->choice() == choice) return;
+    build_fits = false;
     cubes.reset();  // first, so that both never live at once
     cubes = std::make_unique<SceneCubes>(device, assembly, choice, smallest_scales(assembly, world_matrices(*moment)));
 }
@@ -167,20 +182,21 @@ void Renderer::Impl::prepare_frame() {
     const bool cubemap = settings.tracer == Tracer::cubemap;
     last_level = settings.tracer == Tracer::ldc ? settings.bounces : 0;
     const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
-    // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to
-    // grow.
-    const uint64_t most = std::min<uint64_t>(4u << 20, device.limits().maxStorageBufferRange / (2 * sizeof(PathNode)));
+    frame = {};
+    scene.describe(frame);
+    // A band's largest queue entries are rays and branches; bands keep each queue below what the device binds, with
+    // room to grow.
+    const uint64_t most = std::min({uint64_t(4u << 20), device.limits().maxStorageBufferRange / (2 * sizeof(Ray)),
+                                    uint64_t(queues.most_lights()) / std::max(lights_per_hit(), 1u)});
     const uint32_t rows = (settings.height + 7) / 8 * 8;
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
 
-    frame = {};
     box = settings.bounds ? *settings.bounds : bounds(*moment);
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = row_pixels;
-    scene.describe(frame);
     frame.effects = 0;
     if (settings.tracer != Tracer::none)
         frame.effects = (settings.reflection ? EFFECT_REFLECTION : 0u) |
@@ -200,7 +216,8 @@ void Renderer::Impl::prepare_frame() {
     commands.upload(view.frame, std::span<const Frame>(&frame, 1));
     if (cubemap) prepare_maps();
     queues.prepare(std::max(row_pixels * band_rows, cubemap ? maps->face() * maps->face() : 0), last_level + 1,
-                   scene.has_glass);
+                   scene.has_glass, lights_per_hit());
+    if (cubemap || settings.aovs) queues.keep_camera_rays();
 }
 
 void Renderer::Impl::count_times() {
@@ -221,15 +238,23 @@ void Renderer::Impl::build_cubes() {
         scene.record_animation(commands, cubes->cubes());
         if (traces) cubes->record(commands, scene.triangles);
         scene.instances.record(commands, cubes->cubes());
+        // Rays must not walk through cubes that did not find room, so that the host looks first; but once.
+        if (build_fits) break;
         commands.submit();
-        if (!traces || cubes->finish(commands)) break;
+        if (!traces || cubes->finish(commands)) {
+            count_times();
+            break;
+        }
     }
-    count_times();
+    build_fits = true;
     if (traces) rebuilt += cubes->stats().bodies - cubes->stats().fixed;
 }
 
 void Renderer::Impl::record_visibility(uint32_t sample) {
-    record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
+    if (computes_view)
+        compute_view.record(commands, scene, view, queues, sample_position(sample));
+    else
+        record_view(commands, device, "visibility", scene, view, {}, VisibilityParams{sample_position(sample)});
 }
 
 LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -240,6 +265,7 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
     p.sample_index = sample;
     p.jitter = sample_position(sample);
     p.first_row = first_row;
+    p.light_capacity = queues.lights().capacity;
     // Level 0 holds exactly the band's pixels; the last band may be lower.
     if (level == 0) p.capacity = frame.row_pixels * std::min(band_rows, (settings.height - first_row + 7) / 8 * 8);
     return p;
@@ -247,81 +273,128 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
 
 void Renderer::Impl::record_scatter(const LevelParams& p) {
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
-    commands.run_indirect(device.pass("scatter"),
-                          surface_bindings(scene, view.frame,
-                                           {{"environment", scene.environment},
-                                            {"rays", level.rays},
-                                            {"states", level.states},
-                                            {"hits", level.hits},
-                                            {"nodes", level.nodes},
-                                            {"queue", queues.counters()},
-                                            {"next_rays", next.rays},
-                                            {"next_states", next.states},
-                                            {"next_skip", next.skip}}),
-                          p, queues.groups(), p.level * 12);
+    // The camera's level makes its rays itself: what is bound for them is not read.
+    const bool camera = p.level == 0;
+    const PathLevel& source = camera ? next : level;
+    const std::vector<Binding> bindings = surface_bindings(scene, view.frame,
+                                                           {{"environment", scene.environment},
+                                                            {"rays", source.rays},
+                                                            {"states", source.states},
+                                                            {"hits", source.hits},
+                                                            {"nodes", level.nodes},
+                                                            {"branches", level.branches},
+                                                            {"queue", queues.counters()},
+                                                            {"next_rays", next.rays},
+                                                            {"next_states", next.states},
+                                                            {"next_skip", next.skip},
+                                                            {"lights", scene.lights},
+                                                            {"shadow_rays", queues.lights().rays},
+                                                            {"shadow_skip", queues.lights().skip},
+                                                            {"shadow_light", queues.lights().light},
+                                                            {"visibility", view.visibility},
+                                                            {"draws", scene.draw_table}});
+    const Pass& pass = device.pass("scatter", {camera, camera && computes_view});
+    if (camera)
+        commands.run(pass, bindings, p, groups_for(p.capacity, 64));
+    else
+        commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(p.level));
 }
 
-void Renderer::Impl::record_shadow(const LevelParams& p) {
-    const PathLevel& level = queues.level(p.level);
-    const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
-    // Without cubes their bindings still need buffers; the shader does not read them then.
-    const std::vector<Binding> others = surface_bindings(scene, view.frame,
-                                                         {{"instance_boxes", scene.instances.boxes()},
-                                                          {"instance_cubes", scene.instances.cubes()},
-                                                          {"rays", level.rays},
-                                                          {"states", level.states},
-                                                          {"hits", level.hits},
-                                                          {"nodes", level.nodes},
-                                                          {"queue", queues.counters()},
-                                                          {"lights", scene.lights}});
-    const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.base_colors.materials, others);
-    commands.run_indirect(
-        device.pass("shadow",
-                    {uint32_t(hit), traced && scene.has_glass, uint32_t(settings.layout.traversal),
-                     shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact,
-                     instance_constant(scene.instances), device.immediate}),
-        bindings, p, queues.groups(), p.level * 12);
+/// Shadow rays that a hit may start.
+uint32_t Renderer::Impl::lights_per_hit() const {
+    if (settings.tracer != Tracer::ldc) return 0;
+    return (settings.shadow ? frame.lights : 0) + (settings.ambient ? 1 : 0);
 }
 
-/// Traces and scatters the levels of the tree of rays, and shades each as soon as it is known that the next one found
-/// room: where one did not, all that follows is left out, for the band is done again.
+/// The shadow rays of all levels.
+void Renderer::Impl::record_shadows() {
+    const LightQueue& queue = queues.lights();
+    TraceParams p{};
+    p.tree = scene.instances.tree();
+    p.count = queue.capacity;
+    p.tolerance = frame.tolerance;
+    p.block = settings.layout.block;
+    std::vector<Binding> bindings = cube_bindings(traced(), {{"shadow_rays", queue.rays},
+                                                             {"shadow_skip", queue.skip},
+                                                             {"shadow_light", queue.light},
+                                                             {"queue", queues.counters()}});
+    if (scene.has_glass) {
+        for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
+        bindings.push_back({"normals", scene.normals});
+    } else {
+        bindings = with_alpha_test(bindings, scene.triangles);
+    }
+    const Pass& pass =
+        device.pass(scene.has_glass ? "trace_shadow_glass" : "trace_shadow",
+                    {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
+                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances), device.immediate});
+    std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
+    commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
+}
+
+/// Traces and shades the levels of the tree of rays, then all their shadow rays, and gathers the light. Where a queue
+/// does not find room all that follows is left out, for the band is done again.
 void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
     for (uint32_t i = 0; i <= last_level; i++) {
-        const LevelParams p = level_params(i, sample, first_row);
-        commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
         if (i > 0) {
-            record_shadow(level_params(i - 1, sample, first_row));
             const PathLevel& level = queues.level(i);
             record_trace(commands, device, traced(),
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
+                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.counters(),
+                          PathQueues::groups_offset(i)},
                          level.hits, {hit, settings.tolerance, false, Edges::single});
         }
-        record_scatter(p);
+        record_scatter(level_params(i, sample, first_row));
     }
-    record_shadow(level_params(last_level, sample, first_row));
+    if (lights_per_hit() > 0) record_shadows();
+    for (uint32_t i = last_level; i-- > 1;)
+        commands.run_indirect(device.pass("gather"),
+                              {{"nodes", queues.level(i).nodes},
+                               {"branches", queues.level(i).branches},
+                               {"next_nodes", queues.level(i + 1).nodes},
+                               {"shadow_light", queues.lights().light},
+                               {"queue", queues.counters()}},
+                              level_params(i, sample, first_row), queues.counters(), PathQueues::groups_offset(i));
 }
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
-    record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row));
-    if (settings.tracer == Tracer::cubemap)
-        maps->record_shading(commands, view.frame, queues.level(0), level_params(0, sample, first_row));
-    else
-        record_levels(sample, first_row);
-    for (uint32_t i = last_level; i-- > 0;)
-        commands.run_indirect(
-            device.pass("gather"),
-            {{"nodes", queues.level(i).nodes}, {"next_nodes", queues.level(i + 1).nodes}, {"queue", queues.counters()}},
-            level_params(i, sample, first_row), queues.groups(), i * 12);
+    if (first_row == 0) record_visibility(sample);
     const LevelParams p = level_params(0, sample, first_row);
+    if (settings.tracer == Tracer::cubemap) {
+        record_primary(commands, device, scene, view, queues, p, computes_view);
+        maps->record_shading(commands, view.frame, queues.level(0), p);
+    } else {
+        record_levels(sample, first_row);
+    }
+    const bool last = sample + 1 == settings.spp;
     commands.run(device.pass("accumulate"),
                  {{"frame", view.frame},
                   {"nodes", queues.level(0).nodes},
-                  {"hits", queues.level(0).hits},
+                  {"branches", queues.level(0).branches},
+                  {"next_nodes", queues.level(1).nodes},
+                  {"shadow_light", queues.lights().light},
                   {"queue", queues.counters()},
-                  {"picture", picture}},
-                 p, groups_for(p.capacity, 64));
+                  {"picture", picture},
+                  {"encoded", encoded}},
+                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, first_row, sample, last,
+                                  std::exp2(settings.exposure) / float(settings.spp), uint32_t(settings.tonemap)},
+                 groups_for(p.capacity, 64));
     commands.copy(queues.counters(), queues.readback(), QUEUE_COUNTERS * 4);
+}
+
+/// Looks at the counters of a submitted band; false: it must be done again, with more room or fewer rows.
+bool Renderer::Impl::finish_band(uint32_t first_row) {
+    const bool seen = !computes_view || first_row > 0 || compute_view.finish(queues);
+    if (queues.finish()) return seen;
+    if (queues.crowded()) {
+        if (band_rows == 8)
+            fail(
+                "eight rows of pixels need {} shadow rays, more than the {} that are traced at once: choose a smaller "
+                "--size or fewer lights",
+                queues.count(QUEUE_LIGHT), queues.most_lights());
+        band_rows = std::max(8u, band_rows / 16 * 8);
+    }
+    return false;
 }
 
 void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
@@ -336,27 +409,21 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
         });
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
-            if (row == 0) record_visibility(sample);
             for (;; redone++) {
                 record_band(sample, row);
                 commands.submit();
-                if (queues.finish()) break;
+                if (finish_band(row)) break;
                 // The counters told how much room is needed; the picture was left alone.
                 if (progress) progress((sample + double(row) / settings.height) / settings.spp);
             }
             count_times();  // of the turn that fitted: its rays are counted, too
             rays.reflection += queues.count(QUEUE_REFLECTION);
             rays.refraction += queues.count(QUEUE_REFRACTION);
-            rays.shadow += queues.count(QUEUE_SHADOW);
+            rays.shadow += queues.count(QUEUE_LIGHT) - queues.count(QUEUE_AMBIENT);
             rays.ambient += queues.count(QUEUE_AMBIENT);
             if (progress) progress((sample + double(row) / settings.height) / settings.spp);
         }
     rays.primary = uint64_t(settings.width) * settings.height * settings.spp;
-    const uint32_t pixels = settings.width * settings.height;
-    const TonemapParams p{pixels, std::exp2(settings.exposure) / float(settings.spp), uint32_t(settings.tonemap)};
-    commands.run(device.pass("tonemap"), {{"picture", picture}, {"encoded", encoded}}, p, groups_for(pixels, 64));
-    commands.submit();
-    count_times();
 }
 
 void Renderer::Impl::render_aovs(Aovs& aovs) {
@@ -367,10 +434,11 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
             "smaller --size",
             settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
-    record_visibility(0);
+    commands.fill(queues.counters(), 0);
+    record_visibility(0);  // it found room before
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
         const LevelParams p = level_params(0, 0, row);
-        record_primary(commands, device, scene, view, queues, p);
+        record_primary(commands, device, scene, view, queues, p, computes_view);
         commands.run(device.pass("aov"),
                      surface_bindings(scene, view.frame,
                                       {{"rays", queues.level(0).rays},
@@ -438,6 +506,7 @@ void Renderer::pose(const Scene& scene) {
     impl_->moment = &scene;
     impl_->moved = impl_->scene.pose(impl_->commands, scene);
     impl_->maps_moved = true;
+    impl_->build_fits = false;
 }
 
 /// All but the times.
@@ -447,7 +516,9 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.hit = hit;
     stats.choice = cubes->choice();
     stats.scene_bytes = scene.bytes();
-    stats.frame_bytes = queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes();
+    stats.frame_bytes =
+        queues.bytes() + picture.bytes() + encoded.bytes() + view.visibility.bytes() + compute_view.bytes();
+    stats.visibility = computes_view ? Visibility::compute : Visibility::raster;
     stats.tracer = settings.tracer;
     stats.moved = moved;
     if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
@@ -463,6 +534,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     Impl& r = *impl_;
     r.settings = settings;
     r.check_settings();
+    r.commands.time_passes(settings.time_passes);
     r.redone = 0;
     r.prepare_images();
     r.prepare_cubes();

@@ -19,6 +19,13 @@ enum class Tracer : uint8_t {
     none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
 };
 
+/// Who finds what each pixel sees.
+enum class Visibility : uint8_t {
+    automatic,  ///< compute where the device can, but for software devices
+    compute,    ///< compute shaders, with the camera's rays
+    raster,     ///< the graphics pipeline
+};
+
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings {
     uint32_t ldc = 0;       ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
@@ -29,11 +36,14 @@ struct RenderSettings : PictureSettings {
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;         ///< builder, traversal and what belongs to them
     Tracer tracer = Tracer::ldc;
-    uint32_t repeat = 1;  ///< frames to render; times are medians over them
+    Visibility visibility = Visibility::automatic;
+    uint32_t repeat = 1;      ///< frames to render; times are medians over them
+    bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
 };
 
 struct RenderStats {
     Tracer tracer = Tracer::ldc;
+    Visibility visibility = Visibility::compute;  ///< of the camera; never automatic
     struct Time {
         std::string name;
         double ms;  ///< GPU time; median over the repeated frames; summed over bands, samples and levels of a frame

@@ -26,9 +26,9 @@ std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame
 }
 
 void record_primary(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
-                    PathQueues& queues, const LevelParams& params) {
+                    PathQueues& queues, const LevelParams& params, bool by_number) {
     const PathLevel& level = queues.level(0);
-    commands.run(device.pass("primary"),
+    commands.run(device.pass("primary", {by_number}),
                  {{"frame", target.frame},
                   {"positions", scene.triangles.positions},
                   {"triangles", scene.triangles.triangles},
@@ -36,8 +36,8 @@ void record_primary(Commands& commands, Device& device, const GpuScene& scene, c
                   {"rays", level.rays},
                   {"states", level.states},
                   {"hits", level.hits},
-                  {"queue", queues.counters()},
-                  {"instances", scene.instances.table()}},
+                  {"instances", scene.instances.table()},
+                  {"draws", scene.draw_table}},
                  params, groups_for(params.capacity, 64));
 }
 

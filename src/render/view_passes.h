@@ -9,8 +9,9 @@ namespace peelray {
 
 /// What a view is drawn into.
 struct ViewTarget {
-    Buffer frame;       ///< one Frame: the view's constants
-    Buffer visibility;  ///< SurfaceId of what each pixel sees, row by row; triangle ~0: nothing
+    Buffer frame;  ///< one Frame: the view's constants
+    Buffer
+        visibility;  ///< two uint32 of what each pixel sees, row by row; the second is ~0: nothing (shaders/seen.glsl)
     Image2D color, depth;
 
     explicit ViewTarget(Device& device) : frame(device, "frame constants", sizeof(Frame)) {}
@@ -42,8 +43,9 @@ void record_view(Commands& commands, Device& device, const std::string& name, co
                   target.visibility);
 }
 
-/// Camera rays and their hits, from the triangles in `target`: level 0 of the queues.
+/// Camera rays and their hits, from the triangles in `target`: level 0 of the queues. `by_number`: ComputeView found
+/// them.
 void record_primary(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
-                    PathQueues& queues, const LevelParams& params);
+                    PathQueues& queues, const LevelParams& params, bool by_number = false);
 
 }  // namespace peelray

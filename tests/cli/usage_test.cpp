@@ -145,8 +145,9 @@ TEST_F(Usage, CubeMapsTraceNoRays) {
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
-    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing", "--depth",
-                           "--batch",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
+    const Words tracing = {"--builder", "--hit",      "--tolerance", "--traversal", "--block",
+                           "--routing", "--depth",    "--batch",     "--ldc",       "--tracer",
+                           "--device",  "--validate", "--stats",     "--visibility"};
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},

@@ -197,6 +197,29 @@ TEST_F(CommandsTest, TimesAreOnePerPassWithTheGroupsName) {
     EXPECT_EQ(commands().times().size(), 1u);
 }
 
+TEST_F(CommandsTest, OnlyGroupsAndTheWholeAreTimedOnDemand) {
+    ASSERT_GT(device().timestamp_period(), 0);
+    const Buffer a = upload(std::vector<uint32_t>(100000, 1), "a"), b(device(), "b", 400000);
+    commands().time_passes(false);
+    rotate(a, b, 100000, 1, 1);
+    commands().begin_group("build");
+    add(a, 100000, 1);
+    commands().fill(b, 0);
+    commands().end_group();
+    add(b, 100000, 1);
+    commands().submit();
+    const auto times = commands().times();
+    const double elapsed = commands().elapsed_ms();
+    commands().time_passes(true);
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_EQ(times[0].name, "all passes");
+    EXPECT_EQ(times[1].name, "build/all");
+    EXPECT_GT(times[1].ms, 0);
+    EXPECT_GT(times[0].ms, times[1].ms);
+    EXPECT_EQ(elapsed, times[0].ms);
+    EXPECT_EQ(download<uint32_t>(b, 100000), std::vector<uint32_t>(100000, 1));
+}
+
 TEST_F(CommandsTest, OneRecordingMayHoldMorePassesThanAnyPool) {
     // 256 descriptor sets and 512 timers are one pool each.
     const uint32_t passes = 1300;

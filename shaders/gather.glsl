@@ -1,0 +1,23 @@
+// The light of the tree of rays, from the leaves back to the root. Include after the buffers next_nodes, branches and shadow_light.
+#ifndef PEELRAY_GATHER_GLSL
+#define PEELRAY_GATHER_GLSL
+
+/// A node's radiance and what arrives along its shadow rays, always added in the same order.
+vec3 litRadiance(PathNode node) {
+    vec3 sum = node.radiance;
+    const uint end = min(node.first_light + (node.flags & NODE_LIGHTS), params.light_capacity);
+    for (uint k = node.first_light; k < end; k++) sum += shadow_light[k];
+    return sum;
+}
+
+/// What the children of node `i` send it.
+vec3 childrenRadiance(uint i, PathNode node) {
+    vec3 sum = vec3(0);
+    if ((node.flags & NODE_BRANCHES) == 0u) return sum;
+    const PathBranches children = branches[i];
+    if (children.child0 < params.next_capacity) sum += children.weight0 * litRadiance(next_nodes[children.child0]);
+    if (children.child1 < params.next_capacity) sum += children.weight1 * litRadiance(next_nodes[children.child1]);
+    return sum;
+}
+
+#endif

@@ -1,0 +1,60 @@
+// What the passes that trace the queue of shadow rays share: whatever is in a ray's way takes its light. Bindings
+// SHADOW_FIRST_BINDING to SHADOW_FIRST_BINDING + 3. Include after PeelrayRay and PeelrayHit are defined; with SHADOW_THROUGH_GLASS
+// also after frame.glsl.
+#ifndef PEELRAY_TRACE_SHADOW_GLSL
+#define PEELRAY_TRACE_SHADOW_GLSL
+
+BUFFER_ALIGNED(readonly, SHADOW_FIRST_BINDING + 0, Ray, shadow_rays)
+BUFFER(readonly, SHADOW_FIRST_BINDING + 1, SurfaceId, shadow_skip)
+BUFFER(, SHADOW_FIRST_BINDING + 2, vec3, shadow_light)
+BUFFER(readonly, SHADOW_FIRST_BINDING + 3, uint, queue)
+
+// Defined by the shader that includes this.
+/// What the ray hits: the nearest or, with `any`, something; never the surface `skip`.
+PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any);
+
+#ifdef SHADOW_THROUGH_GLASS
+/// Barycentric weights of a hit.
+vec2 shadowWeights(PeelrayRay ray, PeelrayHit hit);
+
+/// Layers of glass that a shadow ray passes before it counts as blocked.
+const uint SHADOW_LAYERS = 16u;
+
+/// Share of the light that arrives along the ray: the tint of the glass in between.
+vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
+    vec3 share = vec3(1);
+    for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
+        const PeelrayHit hit = traceShadow(ray, skip, false);
+        if (hit.triangle == PEELRAY_MISS) return share;
+        const GpuMaterial m = materials[triangle_materials[hit.triangle]];
+        if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
+        const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction);
+        const bool thin = (m.flags & MATERIAL_THIN) != 0u;
+        float reflected = fresnelDielectric(clamp(-dot(ray.direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
+        if (thin) reflected = 2.0 * reflected / (1.0 + reflected);  // both faces of the wall
+        share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
+        // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
+        if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
+        if (largest(share) < 1.0 / 512.0) return vec3(0);
+        ray.tmin = hit.t;
+        skip = uvec2(hit.instance, hit.triangle);
+    }
+    return vec3(0);
+}
+#endif
+
+/// Traces ray `i` of the queue, which has room for `capacity`.
+void shadowRay(uint i, uint capacity) {
+    if (i >= min(capacity, queue[QUEUE_LIGHT])) return;
+    const Ray stored = shadow_rays[i];
+    const PeelrayRay ray = PeelrayRay(stored.origin, stored.tmin, stored.direction, stored.tmax);
+    const uvec2 skip = uvec2(shadow_skip[i].instance, shadow_skip[i].triangle);
+#ifdef SHADOW_THROUGH_GLASS
+    const vec3 share = shadowShare(ray, skip);
+    if (share != vec3(1)) shadow_light[i] *= share;
+#else
+    if (traceShadow(ray, skip, true).triangle != PEELRAY_MISS) shadow_light[i] = vec3(0);
+#endif
+}
+
+#endif
