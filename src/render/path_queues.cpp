@@ -9,7 +9,7 @@ namespace peelray {
 PathQueues::PathQueues(Device& device) : device_(device) {
     counters_ = Buffer(device, "queue counters", QUEUE_COUNTERS * 4);
     readback_ = Buffer(device, "queue counters readback", QUEUE_COUNTERS * 4, Buffer::Where::readback);
-    groups_ = Buffer(device, "queue workgroups", QUEUE_LEVELS * 12);
+    groups_ = Buffer(device, "queue workgroups", 2 * QUEUE_LEVELS * 12);
 }
 
 void PathQueues::allocate(PathLevel& level, uint32_t index, uint32_t capacity) {

@@ -27,7 +27,9 @@ class PathQueues {
 
     PathLevel& level(uint32_t index) { return levels_[index]; }
     const Buffer& counters() const { return counters_; }
+    /// Of each level uvec3 workgroups, then of each the rays in its queue: uvec3(count, 1, 1).
     const Buffer& groups() const { return groups_; }
+    static uint64_t launch_offset(uint32_t level) { return (QUEUE_LEVELS + level) * 12ull; }
     const Buffer& readback() const { return readback_; }
     /// A counter (QUEUE_*) of the last finished band.
     uint32_t count(uint32_t counter) const { return reinterpret_cast<const uint32_t*>(readback_.mapped())[counter]; }

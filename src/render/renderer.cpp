@@ -5,6 +5,8 @@
 #include <map>
 
 #include "base/error.h"
+#include "khr/tracer.h"
+#include "render/structure_bodies.h"
 #include "render/transforms.h"
 
 namespace peelray {
@@ -61,6 +63,8 @@ struct Renderer::Impl {
     GpuScene scene;
     std::unique_ptr<SceneCubes> cubes;
     std::unique_ptr<CubeMaps> maps;
+    std::vector<StructureBody> bodies;  ///< of the structures, as they are now or would be
+    std::unique_ptr<Structures> structures;
     PathQueues queues;
     Commands commands;
     ViewTarget view;
@@ -73,7 +77,7 @@ struct Renderer::Impl {
     uint32_t last_level = 0, band_rows = 0;
     RayCounts rays;
     uint32_t redone = 0, rebuilt = 0, moved = 0;
-    bool maps_moved = false;
+    bool maps_moved = false, structures_moved = false;
     TimeTable times;
     double frame_ms = 0;
 
@@ -82,6 +86,7 @@ struct Renderer::Impl {
           assembly(without_geometry(assembly)),
           moment(&source),
           scene(device, source, assembly, environment),
+          bodies(structure_bodies(source, assembly)),
           queues(device),
           commands(device),
           view(device) {}
@@ -101,14 +106,19 @@ struct Renderer::Impl {
     void prepare_images();
     void prepare_cubes();
     void prepare_maps();
+    void prepare_structures();
     void prepare_frame();
     void count_times();
     void build_cubes();
+    void build_structures();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
     void record_levels(uint32_t sample, uint32_t first_row);
     void record_scatter(const LevelParams& p);
+    RayQueue queue_of(uint32_t level);
+    void record_trace_of(uint32_t level);
     void record_shadow(const LevelParams& p);
+    void record_shadow_khr(const LevelParams& p);
     void record_band(uint32_t sample, uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
     void render_aovs(Aovs& aovs);
@@ -163,9 +173,24 @@ void Renderer::Impl::prepare_maps() {
     maps->prepare(commands, settings, frame, box);
 }
 
+/// The acceleration structures that the settings ask for, not yet built.
+void Renderer::Impl::prepare_structures() {
+    if (settings.tracer != Tracer::khr) return;
+    bool same = structures != nullptr;
+    for (size_t i = 0; i < bodies.size(); i++) {
+        const bool kept = !settings.rebuild && i < assembly.fixed;
+        const StructureUpdate update = kept ? StructureUpdate::keep : settings.structures;
+        same &= bodies[i].update == update;
+        bodies[i].update = update;
+    }
+    if (same) return;
+    structures.reset();  // first, so that both never live at once
+    structures = std::make_unique<Structures>(device, scene.triangles, scene.instances, bodies);
+}
+
 void Renderer::Impl::prepare_frame() {
     const bool cubemap = settings.tracer == Tracer::cubemap;
-    last_level = settings.tracer == Tracer::ldc ? settings.bounces : 0;
+    last_level = settings.tracer == Tracer::ldc || settings.tracer == Tracer::khr ? settings.bounces : 0;
     const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
     // A band's largest queue entry is a path node; bands keep each queue below what the device binds, with room to
     // grow.
@@ -206,6 +231,16 @@ void Renderer::Impl::prepare_frame() {
 void Renderer::Impl::count_times() {
     times.add(commands.times());
     frame_ms += commands.elapsed_ms();
+}
+
+/// The same as build_cubes() for the device's own ray tracing.
+void Renderer::Impl::build_structures() {
+    scene.record_animation(commands, cubes->cubes());
+    scene.instances.record(commands, cubes->cubes(), false);
+    structures->build_kept(commands, [&] { count_times(); });
+    structures->record(commands, moved > 0 || structures_moved);
+    commands.submit();
+    count_times();
 }
 
 /// Everything up to the cubes of this moment: vertices, cubes, instances.
@@ -261,9 +296,41 @@ void Renderer::Impl::record_scatter(const LevelParams& p) {
                           p, queues.groups(), p.level * 12);
 }
 
+RayQueue Renderer::Impl::queue_of(uint32_t level) {
+    const PathLevel& rays = queues.level(level);
+    return {rays.rays, &rays.skip,       rays.capacity, &queues.counters(),
+            level,     &queues.groups(), level * 12ull, PathQueues::launch_offset(level)};
+}
+
+void Renderer::Impl::record_trace_of(uint32_t level) {
+    const Buffer& hits = queues.level(level).hits;
+    if (settings.tracer == Tracer::khr)
+        record_khr_trace(commands, device, *structures, scene.triangles, queue_of(level), hits, false);
+    else
+        record_trace(commands, device, traced(), queue_of(level), hits,
+                     {hit, settings.tolerance, false, Edges::single});
+}
+
+void Renderer::Impl::record_shadow_khr(const LevelParams& p) {
+    const PathLevel& level = queues.level(p.level);
+    const RayPass& pass = khr_pass(device, "shadow_khr", scene.has_glass ? KhrRays::nearest : KhrRays::occluded,
+                                   scene.triangles.masks != nullptr, scene.has_glass);
+    const std::vector<Binding> bindings = surface_bindings(scene, view.frame,
+                                                           {{"rays", level.rays},
+                                                            {"states", level.states},
+                                                            {"hits", level.hits},
+                                                            {"nodes", level.nodes},
+                                                            {"queue", queues.counters()},
+                                                            {"lights", scene.lights}});
+    RayQueue queue = queue_of(p.level);
+    queue.count = p.capacity;
+    record_khr_rays(commands, device, pass, khr_bindings(pass, *structures, bindings), p, queue);
+}
+
 void Renderer::Impl::record_shadow(const LevelParams& p) {
     const PathLevel& level = queues.level(p.level);
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
+    if (traced && settings.tracer == Tracer::khr) return record_shadow_khr(p);
     // Without cubes their bindings still need buffers; the shader does not read them then.
     const std::vector<Binding> others = surface_bindings(scene, view.frame,
                                                          {{"instance_boxes", scene.instances.boxes()},
@@ -290,10 +357,7 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
         commands.run(device.pass("queue_groups"), {{"queue", queues.counters()}, {"groups", queues.groups()}}, p, {1});
         if (i > 0) {
             record_shadow(level_params(i - 1, sample, first_row));
-            const PathLevel& level = queues.level(i);
-            record_trace(commands, device, traced(),
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
-                         level.hits, {hit, settings.tolerance, false, Edges::single});
+            record_trace_of(i);
         }
         record_scatter(p);
     }
@@ -327,7 +391,10 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     rays = {};
     times = {};
     frame_ms = 0;
-    build_cubes();
+    if (settings.tracer == Tracer::khr)
+        build_structures();
+    else
+        build_cubes();
     if (settings.tracer == Tracer::cubemap)
         maps->render(commands, queues, [&] {
             count_times();
@@ -437,6 +504,7 @@ void Renderer::pose(const Scene& scene) {
     impl_->moment = &scene;
     impl_->moved = impl_->scene.pose(impl_->commands, scene);
     impl_->maps_moved = true;
+    impl_->structures_moved |= impl_->moved > 0;
 }
 
 /// All but the times.
@@ -450,6 +518,10 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.tracer = settings.tracer;
     stats.moved = moved;
     if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
+    if (settings.tracer == Tracer::khr) {
+        stats.structures = structures->stats();
+        stats.update = settings.structures;
+    }
     if (settings.tracer != Tracer::ldc) return;
     stats.rebuilt = rebuilt;
     stats.cubes = cubes->stats();
@@ -465,6 +537,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     r.redone = 0;
     r.prepare_images();
     r.prepare_cubes();
+    r.prepare_structures();
     r.prepare_frame();
 
     RenderResult result;
@@ -492,6 +565,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
         if (row.name.starts_with("probe/") || row.name.starts_with("shadow_map/"))
             stats.maps_ms += stats.passes.back().ms;
     }
+    if (settings.tracer == Tracer::khr) r.structures_moved = false;
     stats.frame_ms = median(frames);
     result.rays = r.rays;
     r.describe(stats);
