@@ -339,7 +339,7 @@ void add_trace(CLI::App& program, TraceArguments& a) {
     add_number<uint32_t>(app, "--repeat", a.repeat,
                          "for measuring: trace 2 or more times after a first one that warms up; times are medians")
         ->default_str("1");
-    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "khr"},
+    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr"},
                "ldc: in the layered depth cubes; khr: by the device's own ray tracing, where it has one")
         ->group("Tracing");
     add_choice(app, "--hit", a.tracing.hit, kHits, kHitHelp)->group("Tracing");

@@ -80,6 +80,8 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
 
 void run_trace(const TraceArguments& a) {
     a.tracing.check();
+    if (a.tracing.tracer != "ldc" && a.tracing.tracer != "khr")
+        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", a.tracing.tracer);
     check_repeat(a.repeat);
     std::vector<std::filesystem::path> outputs = {a.hits};
     if (!a.stats.empty()) outputs.push_back(a.stats);
