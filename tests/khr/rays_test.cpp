@@ -56,7 +56,8 @@ TEST_P(KhrOnScene, HitsAreThoseOfTheCubesAndTheOracle) {
         EXPECT_LE(wrong, rays.size() / kRaysPerWrong) << test::name_of(kind);
         EXPECT_LE(wrong_any, rays.size() / kRaysPerWrong) << test::name_of(kind);
         EXPECT_GT(hit, rays.size() / 50) << "rays that hit nothing prove nothing";
-        if (kind == RayKind::uniform) EXPECT_GE(same, rays.size() - rays.size() / 500);
+        // The other kinds go along edges, between triangles that are hit alike.
+        EXPECT_GE(same, kind == RayKind::uniform ? rays.size() - rays.size() / 500 : rays.size() / 2);
     }
 }
 
