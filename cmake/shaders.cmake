@@ -4,10 +4,11 @@ find_program(GLSLC glslc REQUIRED)
 find_program(SPIRV_OPT spirv-opt REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
-# peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .tesc, .tese, .geom and .frag of DIR.
+# peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .tesc, .tese, .geom, .frag, .rgen, .rmiss,
+# .rchit and .rahit of DIR.
 function(peelray_embed_shaders target dir)
   file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.comp ${dir}/*.vert ${dir}/*.tesc ${dir}/*.tese ${dir}/*.geom
-       ${dir}/*.frag)
+       ${dir}/*.frag ${dir}/*.rgen ${dir}/*.rmiss ${dir}/*.rchit ${dir}/*.rahit)
   set(objects)
   foreach(source ${sources})
     get_filename_component(file ${source} NAME)

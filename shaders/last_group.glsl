@@ -19,4 +19,12 @@ void storeGroups(uint index, uint count) {
     queue[at + 2u] = 1u;
 }
 
+/// The same for `rays` of them, 64 to a workgroup, or launched each.
+void storeRays(uint index, uint rays) {
+    storeGroups(index, (rays + 63u) / 64u);
+    const uint at = QUEUE_LAUNCHES + 3u * index;
+    queue[at] = rays;
+    queue[at + 1u] = queue[at + 2u] = 1u;
+}
+
 #endif

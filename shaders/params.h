@@ -323,6 +323,34 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
+// --- The device's own ray tracing (src/khr; shaders/khr_*, trace_khr.rgen, trace_shadow_khr*.rgen) ---
+
+/// A body's acceleration structure.
+struct KhrBody {
+    uvec2 structure;  ///< its address
+    uint first_part;  ///< of its parts in the table of their first triangles
+};
+SHARED_SIZE(KhrBody, 12);
+
+/// VkAccelerationStructureInstanceKHR.
+struct KhrInstance {
+    vec4 row_x;  ///< of the way from the body's space into the world
+    vec4 row_y;
+    vec4 row_z;
+    uint part_and_mask;      ///< 24 bits: KhrBody::first_part; 8: the rays that see it
+    uint offset_and_flags;   ///< 24 bits: of its hit shaders; 8: VkGeometryInstanceFlagsKHR
+    uvec2 structure;         ///< its address; 0: nothing is there
+};
+SHARED_SIZE(KhrInstance, 64);
+
+struct KhrTraceParams {
+    uint count;    ///< rays in the queue; with `counted`: room in the queue
+    uint counted;  ///< 1: the count is queue[counter]
+    uint counter;
+    uint skips;  ///< 1: ray i must not hit skip[i]
+};
+SHARED_SIZE(KhrTraceParams, 16);
+
 // --- A frame (src/render; shaders/view_triangles.comp to accumulate.comp) ---
 
 struct GpuMaterial {
@@ -447,7 +475,9 @@ SHARED_SIZE(PathBranches, 32);
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u
 #define QUEUE_GROUPS_LIGHT 18u
-#define QUEUE_WORDS (QUEUE_GROUPS + 3u * 19u)
+/// Then as many rays, for launching them: three each.
+#define QUEUE_LAUNCHES (QUEUE_GROUPS + 3u * 19u)
+#define QUEUE_WORDS (QUEUE_LAUNCHES + 3u * 19u)
 #define OVERFLOW_PATHS 1u  // a level's rays
 #define OVERFLOW_VIEW 2u   // blocks
 #define OVERFLOW_LIGHT 4u  // shadow rays

@@ -150,8 +150,8 @@ void reserve() {
 void countGroups() {
     const uint overflow = atomicOr(queue[QUEUE_OVERFLOW], 0u);
     if (params.level < frame[0].last_level)
-        storeGroups(params.level + 1u, (overflow & ~OVERFLOW_LIGHT) == 0u ? (atomicAdd(queue[params.level + 1u], 0u) + 63u) / 64u : 0u);
-    storeGroups(QUEUE_GROUPS_LIGHT, overflow == 0u ? (atomicAdd(queue[QUEUE_LIGHT], 0u) + 63u) / 64u : 0u);
+        storeRays(params.level + 1u, (overflow & ~OVERFLOW_LIGHT) == 0u ? atomicAdd(queue[params.level + 1u], 0u) : 0u);
+    storeRays(QUEUE_GROUPS_LIGHT, overflow == 0u ? atomicAdd(queue[QUEUE_LIGHT], 0u) : 0u);
 }
 
 void main() {

@@ -31,6 +31,7 @@
 #include "peelray/cube.h"
 #include "peelray/intersect.glsl"
 #include "peelray/peelray_sample.glsl"
+#include "peelray/ray.glsl"
 
 #ifdef PEELRAY_COUNTERS
 #ifndef PEELRAY_COUNTED
@@ -41,7 +42,6 @@
 #define PEELRAY_COUNT(what) {}
 #endif
 
-const uint PEELRAY_MISS = 0xffffffffu;
 #ifdef PEELRAY_PRECISE
 #define PEELRAY_DECIDES PEELRAY_PRECISE
 #else
@@ -60,20 +60,6 @@ struct PeelrayOptions {
     uvec2 block;      ///< pixels of a block of the coarse level along u and v
     uint batch;       ///< by pixel: PEELRAY_ONE, ...; a constant
     uint instances;   ///< a constant: how many there are, 1 to 8; 0: any number
-};
-
-struct PeelrayHit {
-    float t;        ///< in lengths of the ray's direction; +inf: a miss
-    uint triangle;  ///< PEELRAY_MISS: a miss
-    uint instance;
-    vec2 uv;        ///< barycentric weights of the second and third corner (`exact`)
-};
-
-struct PeelrayRay {
-    vec3 origin;     ///< world units
-    float tmin;
-    vec3 direction;  ///< any length but 0; components may be 0
-    float tmax;
 };
 
 /// Where a line enters and leaves the box [0, size].

@@ -158,7 +158,10 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
         const bool cpu = entry.tracer == "reference";
         facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s["frame_ms"]));
         if (s.value("build_ms", 0.0) > 0)
-            facts.emplace_back(cpu ? "hierarchy" : "of which the cubes", ms(s["build_ms"]));
+            facts.emplace_back(cpu                     ? "hierarchy"
+                               : entry.tracer == "khr" ? "of which the acceleration structures"
+                                                       : "of which the cubes",
+                               ms(s["build_ms"]));
     }
     if (s.contains("rays")) {
         uint64_t secondary = 0;
@@ -172,6 +175,12 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
                                                 cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
         facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
         facts.emplace_back("cubes in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
+    }
+    if (s.contains("khr")) {
+        const Json& khr = s["khr"];
+        facts.emplace_back("acceleration structures", fmt::format("{}, built: {}", khr["structures"].get<uint32_t>(),
+                                                                  khr["built"].get<std::string>()));
+        facts.emplace_back("structures in memory", fmt::format("{:.1f} MiB", khr["bytes"].get<double>() / (1 << 20)));
     }
     if (s.contains("cubemap")) {
         const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];
@@ -327,6 +336,7 @@ void run_compare(const CompareArguments& a) {
     PreparedScene scene = prepare_scene(a);
     watch_interrupts();
     PictureMaker maker(scene, a);
+    for (const Entry& entry : entries) maker.check(entry.tracer);
     for (Entry& entry : entries) render(entry, maker, settings_of(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);

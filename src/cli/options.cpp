@@ -175,7 +175,8 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
         add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr", "none"},
                    "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in double "
                    "precision; cubemap: the baseline without rays, cube maps of each object's surroundings and shadow "
-                   "maps; none: neither; khr: not built yet")
+                   "maps; none: neither; khr: secondary rays by the device's own ray tracing, where it has one "
+                   "(VK_KHR_ray_tracing_pipeline)")
             ->group(effects);
     add_parsed(app, "--effects", a.effects, parse_effects,
                "a list out of reflection,refraction,shadow,ambient, or none",
@@ -204,8 +205,10 @@ void add_picture_options(CLI::App& app, PictureArguments& a, bool compares) {
                          "for measuring: 2 or more frames after a first one that warms up; times are medians")
         ->default_str("1")
         ->group("More output");
-    app.add_flag("--rebuild", a.rebuild,
-                 "for measuring: every cube anew in every frame, as if everything changed its shape")
+    app.add_flag(
+           "--rebuild", a.rebuild,
+           "for measuring: every cube, or acceleration structure, anew in every frame, as if everything changed its "
+           "shape")
         ->group("More output");
     add_device_options(app, a.device);
 }
@@ -293,7 +296,7 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
     refuse_sequence_options(app);
     const char* group = "Comparison";
     add_parsed(app, "--tracers", a.tracers, parse_tracers, "a list out of cubemap,ldc,reference,none,khr, each once",
-               "who renders, a list out of cubemap,ldc,reference,none,khr (khr: not built yet)")
+               "who renders, a list out of cubemap,ldc,reference,none,khr")
         ->type_name("LIST")
         ->default_str("cubemap,ldc,reference")
         ->group(group);
@@ -341,7 +344,8 @@ void add_trace(CLI::App& program, TraceArguments& a) {
     add_number<uint32_t>(app, "--repeat", a.repeat,
                          "for measuring: trace 2 or more times after a first one that warms up; times are medians")
         ->default_str("1");
-    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr"}, "only ldc is built yet")
+    add_choice(app, "--tracer", a.tracing.tracer, {"ldc", "reference", "cubemap", "khr"},
+               "ldc: in the layered depth cubes; khr: by the device's own ray tracing, where it has one")
         ->group("Tracing");
     add_choice(app, "--hit", a.tracing.hit, kHits, kHitHelp)->group("Tracing");
     add_tracing_options(app, a.tracing);

@@ -38,6 +38,10 @@ std::string PictureMaker::renderer_name(const std::string& tracer) {
 #endif
 }
 
+void PictureMaker::check(const std::string& tracer) {
+    if (tracer == "khr") device().check_ray_tracing();
+}
+
 void PictureMaker::check_validation() const {
     if (device_) device_->check_validation();
 }
@@ -56,7 +60,10 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
     if (tracer == "reference") return make_reference(settings, report);
     if (tracer == "cubemap" && settings.ambient && !std::exchange(noted_, true))
         print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
-    settings.tracer = tracer == "cubemap" ? Tracer::cubemap : tracer == "none" ? Tracer::none : Tracer::ldc;
+    settings.tracer = tracer == "cubemap" ? Tracer::cubemap
+                      : tracer == "khr"   ? Tracer::khr
+                      : tracer == "none"  ? Tracer::none
+                                          : Tracer::ldc;
     return make_on_gpu(settings, report);
 }
 
@@ -99,10 +106,15 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
                                    s.maps.shadows.maps);
+    if (s.tracer == Tracer::khr)
+        made.summary =
+            fmt::format(", {} acceleration structure{}", s.structures.bodies, s.structures.bodies == 1 ? "" : "s");
     if (s.timed)
-        made.summary += s.tracer == Tracer::cubemap
-                            ? fmt::format("; GPU {:.2f} ms (maps {:.2f} ms)", s.frame_ms, s.maps_ms)
-                            : fmt::format("; GPU {:.2f} ms (cube {:.2f} ms)", s.frame_ms, s.build_ms);
+        made.summary += fmt::format("; GPU {:.2f} ms ({} {:.2f} ms)", s.frame_ms,
+                                    s.tracer == Tracer::cubemap ? "maps"
+                                    : s.tracer == Tracer::khr   ? "structures"
+                                                                : "cube",
+                                    s.tracer == Tracer::cubemap ? s.maps_ms : s.build_ms);
     made.picture = std::move(result);
     return made;
 }

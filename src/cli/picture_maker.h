@@ -38,6 +38,9 @@ class PictureMaker {
     MadePicture make(const std::string& tracer, RenderSettings settings, const Moment& moment = {},
                      const std::function<void(double)>& progress = {});
 
+    /// Throws Error where a tracer cannot render on this device.
+    void check(const std::string& tracer);
+
     /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
     std::string renderer_name(const std::string& tracer);
 

@@ -44,10 +44,6 @@ const char* program_version() {
 }
 
 void TracingArguments::check() const {
-    const auto later = [](const char* option, const std::string& value, const char* instead) {
-        fail("{} {} is not built into this version: use {}", option, value, instead);
-    };
-    if (tracer == "khr") later("--tracer", tracer, "--tracer ldc");
     if (ldc && (*ldc < 16 || *ldc > 2048))
         fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
     if (!(tolerance > 0) || !std::isfinite(tolerance))

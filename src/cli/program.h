@@ -30,7 +30,7 @@ struct TracingArguments {
     uint32_t depth = 32;          ///< bits
     std::optional<uint32_t> ldc;  ///< none: automatic
 
-    /// Throws Error for values out of range and for what this version does not build yet, naming what does work.
+    /// Throws Error for values out of range, naming what does work.
     void check() const;
 };
 

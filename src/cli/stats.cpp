@@ -114,9 +114,33 @@ static Json map_stats(const RenderStats& stats) {
               {"bytes", m.shadows.bytes}}}};
 }
 
+Json structure_stats(const Structures::Stats& s, StructureUpdate update) {
+    return {{"structures", s.bodies},
+            {"kept", s.kept},
+            {"built", s.kept == s.bodies ? "once" : name_of(update)},
+            {"bytes", s.bytes},
+            {"build_scratch_bytes", s.scratch_bytes},
+            {"kept_bytes", s.kept_bytes},
+            {"kept_bytes_before_compaction", s.loose_bytes}};
+}
+
+static const char* name_of(Tracer tracer) {
+    switch (tracer) {
+        case Tracer::ldc:
+            return "ldc";
+        case Tracer::khr:
+            return "khr";
+        case Tracer::cubemap:
+            return "cubemap";
+        case Tracer::none:
+            return "none";
+    }
+    return "";
+}
+
 Json render_stats(const Device& device, const RenderResult& result, uint64_t triangles, const Box& box) {
     const RenderStats& s = result.stats;
-    Json json = {{"tracer", s.tracer == Tracer::ldc ? "ldc" : s.tracer == Tracer::cubemap ? "cubemap" : "none"}};
+    Json json = {{"tracer", name_of(s.tracer)}};
     json.update(device_stats(device));
     json["image"] = {result.width, result.height};
     json["triangles"] = triangles;
@@ -126,7 +150,7 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     double trace_ms = 0, shadow_ms = 0;
     for (const auto& pass : s.passes) {
         json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
-        if (pass.name == "trace" || pass.name == "trace_four") trace_ms = pass.ms;
+        if (pass.name == "trace" || pass.name == "trace_four" || pass.name == "trace_khr") trace_ms = pass.ms;
         if (pass.name.starts_with("trace_shadow")) shadow_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
@@ -142,10 +166,12 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     }
     if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
     json["visibility"] = s.visibility == Visibility::compute ? "compute" : "raster";
+    if (s.tracer == Tracer::khr) json["khr"] = structure_stats(s.structures, s.update);
     json["hit"] = s.cubes.bodies ? name_of(s.hit) : "none";
     json["memory_bytes"] = {{"scene", s.scene_bytes},
                             {"cube", s.cubes.bytes},
-                            {"build_scratch", s.cubes.scratch_bytes},
+                            {"acceleration_structures", s.structures.bytes},
+                            {"build_scratch", s.cubes.scratch_bytes + s.structures.scratch_bytes},
                             {"frame", s.frame_bytes},
                             {"peak", s.peak_bytes}};
     json["redone"] = s.redone;

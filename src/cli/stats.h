@@ -19,6 +19,8 @@ std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice&
 /// the cubes' grids; `shown`: instances of each; `box`: of the whole scene.
 nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
                                   const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice);
+/// The acceleration structures of --tracer khr. `update`: of what is not kept.
+nlohmann::ordered_json structure_stats(const Structures::Stats& structures, StructureUpdate update);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.

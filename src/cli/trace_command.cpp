@@ -52,12 +52,13 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
 
 nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, const RayScene& scene,
                                    const Traced& traced, bool any_hit) {
-    nlohmann::ordered_json json = device_stats(device);
+    nlohmann::ordered_json json = {{"tracer", scene.structures() ? "khr" : "ldc"}};
+    json.update(device_stats(device));
     const CubeChoice& choice = scene.cubes().choice();
     json["triangles"] = geometry.triangles.size();
     json["rays"] = traced.hits.size();
     json["hits"] = traced.found;
-    json["hit"] = name_of(choice.hit);
+    json["hit"] = scene.structures() ? "none" : name_of(choice.hit);
     json["any_hit"] = any_hit;
     json["build_ms"] = scene.build_ms();
     for (const PassTime& time : scene.build_times()) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
@@ -65,6 +66,10 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
     json["trace_ms"] = traced.trace_ms;
     json["mrays_per_second"] = nullptr;
     if (traced.trace_ms > 0) json["mrays_per_second"] = double(traced.hits.size()) / traced.trace_ms * 1e-3;
+    if (scene.structures()) {
+        json["khr"] = structure_stats(scene.structures()->stats(), StructureUpdate::keep);
+        return json;
+    }
     Commands commands(device);
     json["ldc"] = cube_stats(scene.cubes().stats(), scene.download_bodies(commands), scene.shown(),
                              {geometry.lower, geometry.upper}, choice);
@@ -75,7 +80,8 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
 
 void run_trace(const TraceArguments& a) {
     a.tracing.check();
-    if (a.tracing.tracer != "ldc") fail("--tracer {} traces no rays from files: use --tracer ldc", a.tracing.tracer);
+    if (a.tracing.tracer != "ldc" && a.tracing.tracer != "khr")
+        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", a.tracing.tracer);
     check_repeat(a.repeat);
     std::vector<std::filesystem::path> outputs = {a.hits};
     if (!a.stats.empty()) outputs.push_back(a.stats);
@@ -92,19 +98,26 @@ void run_trace(const TraceArguments& a) {
     const CubeChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
     Device device({a.device.device, a.device.validate});
-    RayScene traced_scene(device, scene, assemble(scene, motion_of(scene, "")), choice);
+    RayScene traced_scene(device, scene, assemble(scene, motion_of(scene, "")), choice, a.tracing.tracer == "khr");
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();
     Commands commands(device);
-    const std::string note = tolerance_note(traced_scene.download_bodies(commands), choice);
-    if (!note.empty()) print_note(note);
+    if (!traced_scene.structures()) {
+        const std::string note = tolerance_note(traced_scene.download_bodies(commands), choice);
+        if (!note.empty()) print_note(note);
+    }
     write_hits(a.hits, traced.hits);
     if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced_scene, traced, a.any_hit));
 
-    fmt::print("{}: {} rays, {} hits ({}), {} cubes of up to {}", a.hits.string(), rays.size(), traced.found,
-               name_of(choice.hit), traced_scene.cubes().stats().bodies, traced_scene.cubes().stats().resolution);
+    fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
+    if (traced_scene.structures())
+        fmt::print(", {} acceleration structures", traced_scene.structures()->stats().bodies);
+    else
+        fmt::print(" ({}), {} cubes of up to {}", name_of(choice.hit), traced_scene.cubes().stats().bodies,
+                   traced_scene.cubes().stats().resolution);
     if (device.timestamp_period() > 0)
-        fmt::print("; on the GPU: cubes {:.2f} ms, rays {:.2f} ms", traced_scene.build_ms(), traced.trace_ms);
+        fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", traced_scene.structures() ? "structures" : "cubes",
+                   traced_scene.build_ms(), traced.trace_ms);
     fmt::print("; {}\n", device.info().name);
 }
 

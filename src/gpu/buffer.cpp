@@ -18,16 +18,23 @@ Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes_;
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    if (where == Where::device) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    const bool device_local = where == Where::device || where == Where::ray_tracing;
+    if (device_local) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    const bool addressed = device_local && device.features.ray_tracing;
+    if (addressed)
+        info.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                      VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+    if (where == Where::ray_tracing)
+        info.usage |=
+            VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR | VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR;
     check_vulkan(device.vk.vkCreateBuffer(device.handle, &info, nullptr, &handle_), "creating the buffer " + name_);
     try {
         VkMemoryRequirements needs;
         device.vk.vkGetBufferMemoryRequirements(device.handle, handle_, &needs);
         const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-        const bool device_local = where == Where::device;
         memory_ = device.allocate(
             needs, device_local ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) : host,
-            where == Where::readback ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT) : 0, name_);
+            where == Where::readback ? VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT) : 0, name_, addressed);
         allocated_ = needs.size;
         check_vulkan(device.vk.vkBindBufferMemory(device.handle, handle_, memory_, 0), "binding the buffer " + name_);
         if (!device_local) {
@@ -40,6 +47,11 @@ Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
         reset();
         throw;
     }
+}
+
+VkDeviceAddress Buffer::address() const {
+    const VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, handle_};
+    return device_->vk.vkGetBufferDeviceAddress(device_->handle, &info);
 }
 
 void Buffer::reset() {

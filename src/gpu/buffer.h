@@ -13,7 +13,12 @@ namespace peelray {
 /// destroyed.
 class Buffer {
   public:
-    enum class Where { device, upload, readback };  ///< upload and readback are mapped staging memory
+    enum class Where {
+        device,
+        upload,  ///< mapped staging memory, as is readback
+        readback,
+        ray_tracing,  ///< device-local as well, for acceleration structures, their builds and shader binding tables
+    };
 
     Buffer() = default;
     /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name`
@@ -27,6 +32,8 @@ class Buffer {
     VkBuffer handle() const { return handle_; }
     uint64_t bytes() const { return bytes_; }
     const std::string& name() const { return name_; }
+    /// On the device; of device and ray_tracing buffers, where the device has ray tracing.
+    VkDeviceAddress address() const;
     std::byte* mapped() const { return mapped_; }
     explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 

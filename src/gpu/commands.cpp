@@ -11,8 +11,6 @@ namespace {
 
 constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
 constexpr uint32_t kTimersPerPool = 512;
-constexpr VkPipelineStageFlags2 kWork = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
-                                        VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 // Indirect arguments are read in a stage of their own.
 constexpr VkPipelineStageFlags2 kCompute =
     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
@@ -26,7 +24,13 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-Commands::Commands(Device& device) : device_(device) {
+Commands::Commands(Device& device)
+    : device_(device),
+      work_(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
+            VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT) {
+    if (device.features.ray_tracing)
+        work_ |=
+            VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR | VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
                                  VK_COMMAND_POOL_CREATE_TRANSIENT_BIT, device.queue_family};
     check_vulkan(device.vk.vkCreateCommandPool(device.handle, &pool, nullptr, &pool_), "creating a command pool");
@@ -55,7 +59,7 @@ void Commands::begin() {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     check_vulkan(device_.vk.vkBeginCommandBuffer(commands_, &info), "recording commands");
-    stages_ = kWork;  // earlier submissions' writes
+    stages_ = work_;  // earlier submissions' writes
     barrier();
     stages_ = 0;
     if (!time_passes_) whole_timer_ = start_timer("all passes");
@@ -73,7 +77,7 @@ void Commands::touch(const Image2D& image, bool writes, bool fresh, VkImageLayou
     if (image.layout == layout) return;
     hazard = true;
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = barrier.dstStageMask = kWork;
+    barrier.srcStageMask = barrier.dstStageMask = work_;
     barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     barrier.oldLayout = fresh ? VK_IMAGE_LAYOUT_UNDEFINED : image.layout;
@@ -83,6 +87,11 @@ void Commands::touch(const Image2D& image, bool writes, bool fresh, VkImageLayou
     barrier.subresourceRange = {image.aspect(), 0, 1, 0, image.layers()};
     transitions_.push_back(barrier);
     image.layout = layout;
+}
+
+void Commands::touch(const AccelerationStructure& structure, bool& hazard) {
+    touch(structure.storage(), true, false, hazard);
+    for (const Buffer* shown : structure.shown) touch(*shown, true, false, hazard);
 }
 
 void Commands::barrier_if(bool hazard, VkPipelineStageFlags2 stages) {
@@ -113,9 +122,10 @@ VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
     for (;; set_pool_++) {
         if (set_pool_ == set_pools_.size()) {
             const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet},
-                                                  {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kSetsPerPool * 2}};
-            VkDescriptorPoolCreateInfo info{
-                VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool, 2, sizes};
+                                                  {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kSetsPerPool * 2},
+                                                  {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kSetsPerPool}};
+            VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool,
+                                            device_.features.ray_tracing ? 3u : 2u,        sizes};
             VkDescriptorPool pool = VK_NULL_HANDLE;
             check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool),
                          "creating a descriptor pool");
@@ -142,19 +152,29 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bi
         const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == want.name; });
         if (given == bindings.end())
             fail("the pass {} was not given '{}' (a programming error)", pass.name(), want.name);
-        if (want.image ? !given->image || !*given->image : !given->buffer || !*given->buffer)
+        const bool is_given = want.structure ? given->structure && *given->structure
+                              : want.image   ? given->image && *given->image
+                                             : given->buffer && *given->buffer;
+        if (!is_given)
             fail("the pass {} was given no {} for '{}' (a programming error)", pass.name(),
-                 want.image ? "image" : "buffer", want.name);
+                 want.structure ? "acceleration structure"
+                 : want.image   ? "image"
+                                : "buffer",
+                 want.name);
         matched.push_back(&*given);
     }
     const VkDescriptorSet set = allocate_set(pass.set_layout());
     std::vector<VkDescriptorBufferInfo> infos(wanted.size());
     std::vector<VkDescriptorImageInfo> image_infos(wanted.size());
+    std::vector<VkAccelerationStructureKHR> structures(wanted.size());
+    std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structure_infos(wanted.size());
     std::vector<VkWriteDescriptorSet> writes;
     for (size_t i = 0; i < wanted.size(); i++) {
         const Binding& given = *matched[i];
         if (given.image)
             image_infos[i] = {VK_NULL_HANDLE, given.image->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        else if (given.structure)
+            structures[i] = given.structure->handle();
         else
             infos[i] = {given.buffer->handle(), 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -167,9 +187,16 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bi
                                    &image_infos[i],
                                    &infos[i],
                                    nullptr};
+        if (given.structure) {
+            structure_infos[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr, 1,
+                                  &structures[i]};
+            write.pNext = &structure_infos[i];
+        }
         writes.push_back(write);
         if (given.image)
             touch(*given.image, false, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, hazard);
+        else if (given.structure)
+            touch(*given.structure, hazard);
         else
             touch(*given.buffer, wanted[i].reads, wanted[i].writes, hazard);
     }
@@ -181,17 +208,26 @@ void Commands::mark(std::span<const Binding> bindings, const PassBase& pass) {
     for (const auto& wanted : pass.interface().bindings) {
         const auto given =
             std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
+        if (given->structure) {
+            access(given->structure->storage()).read = true;
+            for (const Buffer* shown : given->structure->shown) access(*shown).read = true;
+            continue;
+        }
         Access& done = given->image ? access(*given->image) : access(*given->buffer);
         done.read |= wanted.reads;
         done.written |= wanted.writes;
     }
 }
 
-void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                      Groups groups, const Buffer* arguments, uint64_t offset) {
+void Commands::check_params(const PassBase& pass, size_t bytes) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
              pass.interface().push_constant_bytes, bytes);
+}
+
+void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
+                      Groups groups, const Buffer* arguments, uint64_t offset) {
+    check_params(pass, bytes);
     const auto& most = device_.limits().maxComputeWorkGroupCount;
     if (!arguments && (groups.x > most[0] || groups.y > most[1] || groups.z > most[2]))
         fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc",
@@ -221,9 +257,7 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
 void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
                            std::span<const DrawRange> ranges, const IndirectDraws* indirect, const DrawTargets& targets,
                            const Buffer* copied) {
-    if (bytes != pass.interface().push_constant_bytes)
-        fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
-             pass.interface().push_constant_bytes, bytes);
+    check_params(pass, bytes);
     assert(targets.colors.size() == pass.setup().colors.size());
     begin();
     bool hazard = false;

@@ -10,20 +10,24 @@
 #include <unordered_map>
 #include <vector>
 
+#include "gpu/acceleration_structure.h"
 #include "gpu/buffer.h"
 #include "gpu/device.h"
 #include "gpu/pass.h"
+#include "gpu/ray_pass.h"
 
 namespace peelray {
 
-/// A buffer or image given to the binding of that name in a shader.
+/// A buffer, image or acceleration structure given to the binding of that name in a shader.
 struct Binding {
     std::string_view name;
     const Buffer* buffer = nullptr;
     const Image2D* image = nullptr;
+    const AccelerationStructure* structure = nullptr;
 
     Binding(std::string_view n, const Buffer& b) : name(n), buffer(&b) {}
     Binding(std::string_view n, const Image2D& i) : name(n), image(&i) {}
+    Binding(std::string_view n, const AccelerationStructure& s) : name(n), structure(&s) {}
 };
 
 /// How often a compute pass runs, in workgroups.
@@ -115,6 +119,28 @@ class Commands {
         record_draw(pass, bindings, &params, sizeof params, {}, &draws, targets, nullptr);
     }
 
+    /// Runs a ray tracing pass: its ray generation shader `rays` times, in a row.
+    template <typename Params>
+    void trace(const RayPass& pass, std::span<const Binding> bindings, const Params& params, uint32_t rays) {
+        record_rays(pass, bindings, &params, sizeof params, rays, nullptr, 0);
+    }
+    /// The same with the number read on the GPU: VkTraceRaysIndirectCommandKHR in `arguments` at byte `offset`. Needs
+    /// DeviceFeatures::indirect_rays.
+    template <typename Params>
+    void trace_indirect(const RayPass& pass, std::span<const Binding> bindings, const Params& params,
+                        const Buffer& arguments, uint64_t offset) {
+        record_rays(pass, bindings, &params, sizeof params, 0, &arguments, offset);
+    }
+
+    /// Builds acceleration structures, all at once: none may read what another writes.
+    void build(const std::string& name, std::span<const StructureBuild> builds, const Buffer& scratch);
+    /// What finished structures need at least, in bytes. Submits. They were built with
+    /// VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR.
+    std::vector<uint64_t> compacted_bytes(std::span<const AccelerationStructure> structures);
+    /// Copies each of `from` into as little memory as it needs.
+    void compact(const std::string& name, std::span<const AccelerationStructure> from,
+                 std::span<const AccelerationStructure> to);
+
     /// Fills `bytes` from `offset` (multiples of 4; ~0ull: to the end) with `value`.
     void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = ~0ull);
     void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0, uint64_t to_offset = 0);
@@ -162,6 +188,8 @@ class Commands {
     }
     /// `fresh`: what the image holds may be lost.
     void touch(const Image2D& image, bool writes, bool fresh, VkImageLayout layout, bool& hazard);
+    /// For the tracing of rays.
+    void touch(const AccelerationStructure& structure, bool& hazard);
     Access& access(const Buffer& buffer) { return accesses_[uint64_t(buffer.handle())]; }
     Access& access(const Image2D& image) { return accesses_[uint64_t(image.handle())]; }
     /// Before a command of these stages: a barrier if there is a hazard, or if such stages have not been in any
@@ -170,11 +198,14 @@ class Commands {
     void barrier();
     VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
     void mark(std::span<const Binding> bindings, const PassBase& pass);
+    static void check_params(const PassBase& pass, size_t bytes);
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
                 const Buffer* arguments, uint64_t offset);
     void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
                      std::span<const DrawRange> ranges, const IndirectDraws* indirect, const DrawTargets& targets,
                      const Buffer* copied);
+    void record_rays(const RayPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
+                     uint32_t rays, const Buffer* arguments, uint64_t offset);
     void begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer);
     void begin_timer(const std::string& name);
     void end_timer();
@@ -189,6 +220,7 @@ class Commands {
     VkDescriptorSet allocate_set(VkDescriptorSetLayout layout);
 
     Device& device_;
+    VkPipelineStageFlags2 work_;  ///< all stages that do any
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkFence fence_ = VK_NULL_HANDLE;

@@ -9,17 +9,10 @@
 #include "gpu/instance.h"
 #include "gpu/pass.h"
 #include "gpu/pipeline_cache.h"
+#include "gpu/ray_pass.h"
+#include "gpu/ray_tracing_support.h"
 
 namespace peelray {
-
-/// What the device owns and makes on demand.
-struct Device::State {
-    std::unique_ptr<PipelineCache> cache;
-    std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
-    std::map<std::pair<std::string, RasterSetup>, std::unique_ptr<RasterPass>> raster_passes;
-};
-
-namespace {
 
 bool extension_available(VkPhysicalDevice device, const char* name) {
     uint32_t count = 0;
@@ -29,6 +22,16 @@ bool extension_available(VkPhysicalDevice device, const char* name) {
     return std::any_of(extensions.begin(), extensions.end(),
                        [&](auto& e) { return !std::strcmp(e.extensionName, name); });
 }
+
+/// What the device owns and makes on demand.
+struct Device::State {
+    std::unique_ptr<PipelineCache> cache;
+    std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
+    std::map<std::pair<std::string, RasterSetup>, std::unique_ptr<RasterPass>> raster_passes;
+    std::map<std::pair<std::string, RaySetup>, std::unique_ptr<RayPass>> ray_passes;
+};
+
+namespace {
 
 /// Triangles are snapped to 1/256 pixel or so first: growing by less could lose a pixel.
 constexpr float kLeastOverestimation = 1.0f / 64;
@@ -144,10 +147,19 @@ void Device::create_logical(bool validate) {
     info.pEnabledFeatures = &optional;
     std::vector<const char*> extensions;
     if (features.overestimation > 0) extensions.push_back(VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);
+    RayTracingSupport ray_tracing(physical);
+    ray_tracing_lacking_ = ray_tracing.lacking;
+    if (ray_tracing.lacking.empty()) {
+        ray_tracing_limits_ = ray_tracing.limits;
+        ray_tracing.enable(features, extensions);
+        v12.bufferDeviceAddress = VK_TRUE;
+        v13.pNext = ray_tracing.chain();
+    }
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR executables{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR, nullptr, VK_TRUE};
     if (features.executable_properties) {
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        executables.pNext = v13.pNext;
         v13.pNext = &executables;
     }
     info.enabledExtensionCount = uint32_t(extensions.size());
@@ -180,6 +192,20 @@ const RasterPass& Device::raster_pass(std::string_view shader, const RasterSetup
     return *entry;
 }
 
+const RayPass& Device::ray_pass(std::string_view shader, const RaySetup& setup) {
+    auto& entry = state_->ray_passes[{std::string(shader), setup}];
+    if (!entry) entry = std::make_unique<RayPass>(*this, state_->cache->handle(), shader, setup);
+    return *entry;
+}
+
+void Device::check_ray_tracing() const {
+    if (!features.ray_tracing)
+        fail(
+            "--tracer khr needs Vulkan's ray tracing, but the device '{}' lacks {}: use --tracer ldc, which does "
+            "without, update its driver, or choose another --device",
+            info_.name, ray_tracing_lacking_);
+}
+
 void Device::check_validation() const {
     if (!validation_messages_.empty())
         fail("the Vulkan validation layers complain ({} messages); the first: {}", validation_messages_.size(),
@@ -187,7 +213,7 @@ void Device::check_validation() const {
 }
 
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
-                                VkMemoryPropertyFlags nice, std::string_view what) {
+                                VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
     int best = -1;
     for (uint32_t type = 0; type < memory_.memoryTypeCount; type++) {
         const auto flags = memory_.memoryTypes[type].propertyFlags;
@@ -199,7 +225,10 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPrope
         if (best < 0) best = int(type);
     }
     if (best < 0) fail("the device '{}' has no memory of the kind needed for {}", info_.name, what);
-    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, uint32_t(best)};
+    const VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO, nullptr,
+                                          VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT, 0};
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, addressed ? &flags : nullptr, needs.size,
+                              uint32_t(best)};
     VkDeviceMemory memory = VK_NULL_HANDLE;
     check_vulkan(vk.vkAllocateMemory(handle, &info, nullptr, &memory),
                  fmt::format("allocating {:.0f} MiB for {}", double(needs.size) / (1 << 20), what));

@@ -14,7 +14,9 @@ namespace peelray {
 class Pass;
 class PipelineCache;
 class RasterPass;
+class RayPass;
 struct RasterSetup;
+struct RaySetup;
 
 /// One physical device, as `peelray devices` lists it.
 struct DeviceInfo {
@@ -47,6 +49,18 @@ struct DeviceFeatures {
     /// VK_EXT_conservative_rasterization that grows triangles by this many pixels more than it must, however thin they
     /// are; 0: not offered.
     float overestimation = 0;
+    bool ray_tracing = false;    ///< VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline
+    bool indirect_rays = false;  ///< launches of rays whose number is read on the GPU
+    bool skips_boxes = false;    ///< pipelines may say that there is nothing but triangles
+};
+
+/// What the device's ray tracing asks for; with DeviceFeatures::ray_tracing.
+struct RayTracingLimits {
+    uint32_t handle_bytes = 0, handle_alignment = 1, table_alignment = 1;  ///< of shader binding tables
+    uint32_t scratch_alignment = 1;                                        ///< of builds
+    uint64_t most_triangles = 0;                                           ///< of an acceleration structure
+    uint64_t most_instances = 0;
+    uint64_t most_rays = 0;  ///< of a launch
 };
 
 /// A logical device with one queue that does graphics, compute and transfer.
@@ -70,6 +84,13 @@ class Device {
     /// The rasterising pass whose fragment shader is NAME.frag, made once and kept for each setup.
     const RasterPass& raster_pass(std::string_view shader, const RasterSetup& setup);
 
+    /// The ray tracing pass whose ray generation shader is NAME.rgen, made once and kept for each setup.
+    const RayPass& ray_pass(std::string_view shader, const RaySetup& setup);
+
+    /// Throws Error that says what is missing unless rays can be traced by the device's own means.
+    void check_ray_tracing() const;
+    const RayTracingLimits& ray_tracing_limits() const { return ray_tracing_limits_; }
+
     /// What the validation layers said so far, one message each; empty without `validate`.
     const std::vector<std::string>& validation_messages() const { return validation_messages_; }
     /// Throws Error with the first message if there is any.
@@ -92,8 +113,9 @@ class Device {
     bool immediate = false;
     DeviceFeatures features;  ///< tests turn some off
     bool labels = false;      ///< VK_EXT_debug_utils is on: passes name themselves
+    /// `addressed`: of a buffer with VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
-                            std::string_view what);
+                            std::string_view what, bool addressed = false);
     void release(VkDeviceMemory memory, uint64_t size);
 
   private:
@@ -106,6 +128,8 @@ class Device {
     DeviceInfo info_;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
+    RayTracingLimits ray_tracing_limits_;
+    std::string ray_tracing_lacking_;  ///< why there is none
     double timestamp_period_ = 0;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

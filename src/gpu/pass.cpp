@@ -19,13 +19,12 @@ std::span<const uint32_t> find_shader(std::string_view name) {
     fail("no shader '{}' is built in (a programming error)", name);
 }
 
-std::vector<VkSpecializationMapEntry> constant_entries(const std::vector<uint32_t>& constants) {
-    std::vector<VkSpecializationMapEntry> entries;
-    for (uint32_t i = 0; i < constants.size(); i++) entries.push_back({i, i * 4, 4});
-    return entries;
-}
-
 }  // namespace
+
+Specialization::Specialization(const std::vector<uint32_t>& constants) {
+    for (uint32_t i = 0; i < constants.size(); i++) entries_.push_back({i, i * 4, 4});
+    info_ = {uint32_t(entries_.size()), entries_.data(), constants.size() * 4, constants.data()};
+}
 
 void register_shaders(std::span<const EmbeddedShader> shaders) {
     registered().insert(registered().end(), shaders.begin(), shaders.end());
@@ -35,7 +34,7 @@ void ShaderInterface::add(const ShaderBinding& found) {
     const auto same =
         std::find_if(bindings.begin(), bindings.end(), [&](auto& other) { return other.binding == found.binding; });
     if (same == bindings.end()) return bindings.push_back(found);
-    if (same->name != found.name || same->image != found.image)
+    if (same->name != found.name || same->image != found.image || same->structure != found.structure)
         fail("two stages disagree on binding {}: '{}' and '{}' (a programming error)", found.binding, same->name,
              found.name);
     same->reads |= found.reads;
@@ -55,6 +54,8 @@ void ShaderInterface::reflect(std::span<const uint32_t> code) {
     }
     for (const auto& image : resources.separate_images)
         add({image.name, compiler.get_decoration(image.id, spv::DecorationBinding), true, false, true});
+    for (const auto& structure : resources.acceleration_structures)
+        add({structure.name, compiler.get_decoration(structure.id, spv::DecorationBinding), true, false, false, true});
     for (const auto& resource : resources.push_constant_buffers) {
         const auto size = compiler.get_declared_struct_size(compiler.get_type(resource.base_type_id));
         push_constant_bytes = std::max(push_constant_bytes, uint32_t(size));
@@ -73,7 +74,8 @@ PassBase::~PassBase() {
     device_.vk.vkDestroyDescriptorSetLayout(device_.handle, set_layout_, nullptr);
 }
 
-VkShaderModule PassBase::create_module(std::span<const uint32_t> code) {
+VkShaderModule PassBase::create_module(std::string_view shader) {
+    const std::span<const uint32_t> code = find_shader(shader);
     interface_.reflect(code);
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, code.size_bytes(),
                                   code.data()};
@@ -105,16 +107,18 @@ void PassBase::create_layout() {
 Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const std::vector<uint32_t>& constants)
     : PassBase(device, std::string(shader)) {
     stages_ = VK_SHADER_STAGE_COMPUTE_BIT;
-    VkShaderModule module = create_module(find_shader(shader));
+    VkShaderModule module = create_module(shader);
     create_layout();
 
-    const std::vector<VkSpecializationMapEntry> entries = constant_entries(constants);
-    const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), constants.size() * 4,
-                                              constants.data()};
+    const Specialization specialization(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage = {
-        VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT, module, "main",
-        constants.empty() ? nullptr : &specialization};
+    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  nullptr,
+                  0,
+                  VK_SHADER_STAGE_COMPUTE_BIT,
+                  module,
+                  "main",
+                  specialization.info()};
     info.layout = layout_;
     if (device.features.executable_properties) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     const VkResult result = device.vk.vkCreateComputePipelines(device.handle, cache, 1, &info, nullptr, &pipeline_);
@@ -165,14 +169,12 @@ RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view s
     if (!setup.geometry.empty()) files.push_back({VK_SHADER_STAGE_GEOMETRY_BIT, setup.geometry + ".geom"});
     files.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, name_ + ".frag"});
 
-    const std::vector<VkSpecializationMapEntry> entries = constant_entries(setup.constants);
-    const VkSpecializationInfo specialization{uint32_t(entries.size()), entries.data(), setup.constants.size() * 4,
-                                              setup.constants.data()};
+    const Specialization specialization(setup.constants);
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     for (const Stage& stage : files) {
         stages_ |= stage.bit;
         stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit,
-                          create_module(find_shader(stage.file)), "main", &specialization});
+                          create_module(stage.file), "main", specialization.info()});
     }
     create_layout();
     create_pipeline(cache, stages);

@@ -10,12 +10,13 @@
 
 namespace peelray {
 
-/// A storage buffer or image of a shader as reflection sees it.
+/// A storage buffer, image or acceleration structure of a shader as reflection sees it.
 struct ShaderBinding {
-    std::string name;  ///< the block's name less its suffix "_block" (see shaders/common.glsl), or the image's
+    std::string name;  ///< the block's name less its suffix "_block" (see shaders/common.glsl), or the variable's
     uint32_t binding;
     bool reads, writes;
-    bool image = false;  ///< read texel by texel, without a sampler
+    bool image = false;      ///< read texel by texel, without a sampler
+    bool structure = false;  ///< an acceleration structure
 };
 
 /// What a shader (or the stages of a rasterising pass together) declares.
@@ -32,8 +33,23 @@ struct ShaderInterface {
 };
 
 inline VkDescriptorType descriptor_type(const ShaderBinding& binding) {
-    return binding.image ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    return binding.structure ? VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
+           : binding.image   ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
+                             : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
+
+/// Specialisation constants 0, 1, … of a shader, as Vulkan takes them. `constants` must outlive it.
+class Specialization {
+  public:
+    explicit Specialization(const std::vector<uint32_t>& constants);
+    Specialization(const Specialization&) = delete;
+    Specialization& operator=(const Specialization&) = delete;
+    const VkSpecializationInfo* info() const { return &info_; }
+
+  private:
+    std::vector<VkSpecializationMapEntry> entries_;
+    VkSpecializationInfo info_{};
+};
 
 /// The part that every kind of pass shares: layout and pipeline.
 class PassBase {
@@ -52,7 +68,8 @@ class PassBase {
 
   protected:
     void create_layout();
-    VkShaderModule create_module(std::span<const uint32_t> code);
+    /// Of the built-in shader of this name; adds what it declares to the interface.
+    VkShaderModule create_module(std::string_view shader);
 
     Device& device_;
     std::string name_;

@@ -67,7 +67,7 @@ TreeParams Instances::tree_params() const {
     return p;
 }
 
-void Instances::record(Commands& commands, const Cubes& cubes) {
+void Instances::record(Commands& commands, const Cubes& cubes, bool hierarchy) {
     commands.begin_group("instances");
     const InstanceParams p{count(), filled(count())};
     // The only group of a small hierarchy needs no order.
@@ -82,9 +82,9 @@ void Instances::record(Commands& commands, const Cubes& cubes) {
                   {"instance_cubes", cubes_},
                   {"instance_boxes", boxes}},
                  p, groups_for(p.padded, 64));
-    if (count() > TREE_SMALL)
+    if (hierarchy && count() > TREE_SMALL)
         record_large(commands);
-    else if (count() > 8)
+    else if (hierarchy && count() > 8)
         record_small(commands);
     commands.end_group();
 }

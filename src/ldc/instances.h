@@ -20,8 +20,8 @@ class Instances {
     const Buffer& transforms() const { return transforms_; }  ///< GpuTransform each
 
     /// Records the passes that place the cubes as they are now, into the group "instances". Every build of a moving
-    /// body is followed by it.
-    void record(Commands& commands, const Cubes& cubes);
+    /// body is followed by it. Without the `hierarchy` for rays that are not traced in the cubes.
+    void record(Commands& commands, const Cubes& cubes, bool hierarchy = true);
 
     const Buffer& table() const { return table_; }  ///< GpuInstance each
     const Buffer& cubes() const { return cubes_; }  ///< PeelrayInstance each

@@ -35,6 +35,7 @@ struct RayQueue {
     const Buffer* groups =
         nullptr;  ///< null: dispatched for `count`; else workgroups of 64 rays are read at groups_offset
     uint64_t groups_offset = 0;
+    uint64_t launch_offset = 0;  ///< of `groups`: the rays themselves (count, 1, 1), for the device's own ray tracing
 };
 
 /// How `exact` hits within rounding of a triangle's edge are decided: both are watertight.

@@ -1,12 +1,14 @@
 #include "render/ray_scene.h"
 
+#include "khr/tracer.h"
 #include "render/base_colors.h"
+#include "render/structure_bodies.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
 
 namespace peelray {
 
-RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice)
+RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice, bool khr)
     : device_(device),
       triangles_(device, assembly.positions, assembly.triangles),
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
@@ -21,6 +23,26 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
     instances_.place(commands, transforms_of(assembly.instances, world_matrices(scene)));
     for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;
+    if (khr)
+        build_structures(commands, scene, assembly);
+    else
+        build_cubes(commands);
+}
+
+void RayScene::build_structures(Commands& commands, const Scene& scene, const Assembly& assembly) {
+    structures_ = std::make_unique<Structures>(device_, triangles_, instances_, structure_bodies(scene, assembly));
+    const auto count = [&] {
+        build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());
+        build_ms_ += commands.elapsed_ms();
+    };
+    instances_.record(commands, cubes_.cubes(), false);
+    structures_->build_kept(commands, count);
+    structures_->record(commands, true);
+    commands.submit();
+    count();
+}
+
+void RayScene::build_cubes(Commands& commands) {
     // What deforms lies in the assembly as it is now.
     for (bool built = false; !built;) {
         const bool fixed = cubes_.build_fixed(commands, triangles_);
@@ -36,8 +58,11 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
 
 void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
-    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
-                 {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
+    if (structures_)
+        record_khr_trace(commands, device_, *structures_, triangles_, {rays, nullptr, count}, hits_, any_hit);
+    else
+        record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
+                     {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
     record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
 }
 

@@ -1,14 +1,17 @@
-// A scene for rays alone: cubes and what tells whose triangles were hit, nothing to shade with but what tells of holes.
+// A scene for rays alone: cubes, or acceleration structures, and what tells whose triangles were hit, nothing to shade
+// with but what tells of holes.
 #pragma once
 
+#include "khr/structures.h"
 #include "render/scene_cubes.h"
 
 namespace peelray {
 
 class RayScene {
   public:
-    /// Uploads the scene in its present moment and builds its cubes.
-    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice);
+    /// Uploads the scene in its present moment and builds its cubes; with `khr` the device's own acceleration
+    /// structures instead. Throws Error where it has none.
+    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice, bool khr = false);
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
@@ -16,18 +19,24 @@ class RayScene {
     void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
 
     const SceneCubes& cubes() const { return cubes_; }
+    /// Null: rays are traced in the cubes.
+    const Structures* structures() const { return structures_.get(); }
     std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }
     std::vector<uint32_t> shown() const { return shown_; }  ///< instances of each body
     const std::vector<PassTime>& build_times() const { return build_times_; }
     double build_ms() const { return build_ms_; }
 
   private:
+    void build_cubes(Commands& commands);
+    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly);
+
     Device& device_;
     TriangleBuffers triangles_;
     BaseColorBuffers base_colors_;  ///< only where a material is masked
     Buffer triangle_ids_, hits_;
     Instances instances_;
     SceneCubes cubes_;
+    std::unique_ptr<Structures> structures_;
     std::vector<uint32_t> shown_;
     std::vector<PassTime> build_times_;
     double build_ms_ = 0;

@@ -5,7 +5,9 @@
 #include <map>
 
 #include "base/error.h"
+#include "khr/tracer.h"
 #include "render/compute_view.h"
+#include "render/structure_bodies.h"
 #include "render/transforms.h"
 
 namespace peelray {
@@ -62,6 +64,8 @@ struct Renderer::Impl {
     GpuScene scene;
     std::unique_ptr<SceneCubes> cubes;
     std::unique_ptr<CubeMaps> maps;
+    std::vector<StructureBody> bodies;  ///< of the structures, as they are now or would be
+    std::unique_ptr<Structures> structures;
     PathQueues queues;
     Commands commands;
     ViewTarget view;
@@ -77,7 +81,7 @@ struct Renderer::Impl {
     uint32_t last_level = 0, band_rows = 0;
     RayCounts rays;
     uint32_t redone = 0, rebuilt = 0, moved = 0;
-    bool maps_moved = false;
+    bool maps_moved = false, structures_moved = false;
     TimeTable times;
     double frame_ms = 0;
 
@@ -86,6 +90,7 @@ struct Renderer::Impl {
           assembly(without_geometry(assembly)),
           moment(&source),
           scene(device, source, assembly, environment),
+          bodies(structure_bodies(source, assembly)),
           queues(device),
           commands(device),
           view(device),
@@ -106,15 +111,20 @@ struct Renderer::Impl {
     void prepare_images();
     void prepare_cubes();
     void prepare_maps();
+    void prepare_structures();
     void prepare_frame();
     void count_times();
     void build_cubes();
+    void build_structures();
     void record_visibility(uint32_t sample);
     LevelParams level_params(uint32_t level, uint32_t sample, uint32_t first_row);
     void record_levels(uint32_t sample, uint32_t first_row);
     void record_scatter(const LevelParams& p);
     uint32_t lights_per_hit() const;
     void record_shadows();
+    void record_shadows_khr();
+    RayQueue queue_of(uint32_t level);
+    void record_trace_of(uint32_t level);
     void record_band(uint32_t sample, uint32_t first_row);
     bool finish_band(uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
@@ -178,9 +188,24 @@ void Renderer::Impl::prepare_maps() {
     maps->prepare(commands, settings, frame, box);
 }
 
+/// The acceleration structures that the settings ask for, not yet built.
+void Renderer::Impl::prepare_structures() {
+    if (settings.tracer != Tracer::khr) return;
+    bool same = structures != nullptr;
+    for (size_t i = 0; i < bodies.size(); i++) {
+        const bool kept = !settings.rebuild && i < assembly.fixed;
+        const StructureUpdate update = kept ? StructureUpdate::keep : settings.structures;
+        same &= bodies[i].update == update;
+        bodies[i].update = update;
+    }
+    if (same) return;
+    structures.reset();  // first, so that both never live at once
+    structures = std::make_unique<Structures>(device, scene.triangles, scene.instances, bodies);
+}
+
 void Renderer::Impl::prepare_frame() {
     const bool cubemap = settings.tracer == Tracer::cubemap;
-    last_level = settings.tracer == Tracer::ldc ? settings.bounces : 0;
+    last_level = settings.tracer == Tracer::ldc || settings.tracer == Tracer::khr ? settings.bounces : 0;
     const uint32_t row_pixels = (settings.width + 7) / 8 * 8;
     frame = {};
     scene.describe(frame);
@@ -223,6 +248,16 @@ void Renderer::Impl::prepare_frame() {
 void Renderer::Impl::count_times() {
     times.add(commands.times());
     frame_ms += commands.elapsed_ms();
+}
+
+/// The same as build_cubes() for the device's own ray tracing.
+void Renderer::Impl::build_structures() {
+    scene.record_animation(commands, cubes->cubes());
+    scene.instances.record(commands, cubes->cubes(), false);
+    structures->build_kept(commands, [&] { count_times(); });
+    structures->record(commands, moved > 0 || structures_moved);
+    commands.submit();
+    count_times();
 }
 
 /// Everything up to the cubes of this moment: vertices, cubes, instances.
@@ -302,8 +337,51 @@ void Renderer::Impl::record_scatter(const LevelParams& p) {
 
 /// Shadow rays that a hit may start.
 uint32_t Renderer::Impl::lights_per_hit() const {
-    if (settings.tracer != Tracer::ldc) return 0;
+    if (settings.tracer != Tracer::ldc && settings.tracer != Tracer::khr) return 0;
     return (settings.shadow ? frame.lights : 0) + (settings.ambient ? 1 : 0);
+}
+
+RayQueue Renderer::Impl::queue_of(uint32_t level) {
+    const PathLevel& rays = queues.level(level);
+    return {rays.rays,
+            &rays.skip,
+            rays.capacity,
+            &queues.counters(),
+            level,
+            &queues.counters(),
+            PathQueues::groups_offset(level),
+            PathQueues::launch_offset(level)};
+}
+
+void Renderer::Impl::record_trace_of(uint32_t level) {
+    const Buffer& hits = queues.level(level).hits;
+    if (settings.tracer == Tracer::khr)
+        record_khr_trace(commands, device, *structures, scene.triangles, queue_of(level), hits, false);
+    else
+        record_trace(commands, device, traced(), queue_of(level), hits,
+                     {hit, settings.tolerance, false, Edges::single});
+}
+
+/// The same as record_shadows() for the device's own ray tracing.
+void Renderer::Impl::record_shadows_khr() {
+    const LightQueue& lights = queues.lights();
+    const std::vector<Binding> bindings = surface_bindings(scene, view.frame,
+                                                           {{"shadow_rays", lights.rays},
+                                                            {"shadow_skip", lights.skip},
+                                                            {"shadow_light", lights.light},
+                                                            {"queue", queues.counters()}});
+    const RayPass& pass = khr_pass(device, scene.has_glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
+                                   scene.has_glass ? KhrRays::nearest : KhrRays::occluded,
+                                   scene.triangles.masks != nullptr, 0);
+    const RayQueue queue{lights.rays,
+                         &lights.skip,
+                         lights.capacity,
+                         &queues.counters(),
+                         QUEUE_LIGHT,
+                         &queues.counters(),
+                         PathQueues::groups_offset(QUEUE_GROUPS_LIGHT),
+                         PathQueues::launch_offset(QUEUE_GROUPS_LIGHT)};
+    record_khr_rays(commands, device, pass, khr_bindings(pass, *structures, bindings), lights.capacity, queue);
 }
 
 /// The shadow rays of all levels.
@@ -337,15 +415,11 @@ void Renderer::Impl::record_shadows() {
 void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
     for (uint32_t i = 0; i <= last_level; i++) {
         if (i > 0) {
-            const PathLevel& level = queues.level(i);
-            record_trace(commands, device, traced(),
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.counters(),
-                          PathQueues::groups_offset(i)},
-                         level.hits, {hit, settings.tolerance, false, Edges::single});
+            record_trace_of(i);
         }
         record_scatter(level_params(i, sample, first_row));
     }
-    if (lights_per_hit() > 0) record_shadows();
+    if (lights_per_hit() > 0) settings.tracer == Tracer::khr ? record_shadows_khr() : record_shadows();
     for (uint32_t i = last_level; i-- > 1;)
         commands.run_indirect(device.pass("gather"),
                               {{"nodes", queues.level(i).nodes},
@@ -401,7 +475,10 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
     rays = {};
     times = {};
     frame_ms = 0;
-    build_cubes();
+    if (settings.tracer == Tracer::khr)
+        build_structures();
+    else
+        build_cubes();
     if (settings.tracer == Tracer::cubemap)
         maps->render(commands, queues, [&] {
             count_times();
@@ -507,6 +584,7 @@ void Renderer::pose(const Scene& scene) {
     impl_->moved = impl_->scene.pose(impl_->commands, scene);
     impl_->maps_moved = true;
     impl_->build_fits = false;
+    impl_->structures_moved |= impl_->moved > 0;
 }
 
 /// All but the times.
@@ -522,6 +600,10 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.tracer = settings.tracer;
     stats.moved = moved;
     if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
+    if (settings.tracer == Tracer::khr) {
+        stats.structures = structures->stats();
+        stats.update = settings.structures;
+    }
     if (settings.tracer != Tracer::ldc) return;
     stats.rebuilt = rebuilt;
     stats.cubes = cubes->stats();
@@ -538,6 +620,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     r.redone = 0;
     r.prepare_images();
     r.prepare_cubes();
+    r.prepare_structures();
     r.prepare_frame();
 
     RenderResult result;
@@ -565,6 +648,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
         if (row.name.starts_with("probe/") || row.name.starts_with("shadow_map/"))
             stats.maps_ms += stats.passes.back().ms;
     }
+    if (settings.tracer == Tracer::khr) r.structures_moved = false;
     stats.frame_ms = median(frames);
     result.rays = r.rays;
     r.describe(stats);

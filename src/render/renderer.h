@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "khr/structures.h"
 #include "render/cube_maps.h"
 #include "render/scene_cubes.h"
 #include "scene/picture.h"
@@ -15,6 +16,7 @@ namespace peelray {
 /// Who answers for what a surface mirrors, lets through and has in its way to the light.
 enum class Tracer : uint8_t {
     ldc,      ///< rays in the layered depth cube
+    khr,      ///< the rival: rays by the device's own ray tracing
     cubemap,  ///< the baseline: cube maps of each object's surroundings and shadow maps
     none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
 };
@@ -30,13 +32,16 @@ enum class Visibility : uint8_t {
 struct RenderSettings : PictureSettings {
     uint32_t ldc = 0;       ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
     bool ldc_each = false;  ///< for measuring: `ldc` voxels for every body, not only for the largest
-    bool rebuild = false;   ///< for measuring: every cube anew in every frame, as if everything changed its shape
+    bool rebuild = false;   ///< for measuring: all cubes or structures anew in every frame, as if everything changed
     bool hit_auto = true;   ///< choose the hit test by the number of triangles
     HitTest hit = HitTest::exact;
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;         ///< builder, traversal and what belongs to them
     Tracer tracer = Tracer::ldc;
     Visibility visibility = Visibility::automatic;
+    /// Of `khr`: what becomes of the structure of a body that changes its shape, or, with `rebuild`, of every one.
+    /// `keep` leaves all as they were first: for measuring the rays alone.
+    StructureUpdate structures = StructureUpdate::rebuild;
     uint32_t repeat = 1;      ///< frames to render; times are medians over them
     bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
 };
@@ -54,7 +59,7 @@ struct RenderStats {
     };
     std::vector<FrameTime> frames;  ///< each of those that the medians are taken of, in order
     double frame_ms = 0;            ///< GPU time from first to last pass, median over the frames
-    double build_ms = 0;            ///< of the cube's passes
+    double build_ms = 0;            ///< of the passes that build cubes, or acceleration structures
     double maps_ms = 0;             ///< of the passes of probes and shadow maps
     bool timed = false;             ///< false: the device has no timestamps
     SceneCubes::Stats cubes;
@@ -66,7 +71,9 @@ struct RenderStats {
     HitTest hit = HitTest::exact;
     CubeChoice choice;  ///< of the cubes
     CubeMaps::Stats maps;
-    uint32_t redone = 0;  ///< how often something did not fit and was done again
+    Structures::Stats structures;                       ///< of `khr`
+    StructureUpdate update = StructureUpdate::rebuild;  ///< of those of them that are not kept
+    uint32_t redone = 0;                                ///< how often something did not fit and was done again
 };
 
 struct RenderResult : Picture {

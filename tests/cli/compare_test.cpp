@@ -158,7 +158,6 @@ TEST_F(CompareCommand, WrongUsageAndBadInput) {
     expect_refused(compare(in("cube.obj"), {"--tracers", ""}), 2, "--tracers");
     expect_refused(compare(in("cube.obj"), {"--hit", "exact,exact"}), 2, "each once");
     expect_refused(compare(in("cube.obj"), {"--tracer", "ldc"}), 2, "--tracer");
-    expect_refused(compare(in("cube.obj"), {"--tracers", "ldc,khr"}), 1, "--tracer khr is not built");
     expect_refused(compare(in("cube.obj"), {"--hit", "exact", "--builder", "peel"}), 1, "--builder peel captures");
     expect_refused(compare(in("no.obj")), 1, "no.obj");
     expect_refused(compare(in("cube.obj"), {"--picture", in("no.png")}), 1, "no.png");

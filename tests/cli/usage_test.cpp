@@ -132,8 +132,35 @@ TEST_F(Usage, ImpossibleValues) {
 }
 
 TEST_F(Usage, NotBuiltYet) {
-    expect_each(1, {{{"--tracer", "khr"}, "not built into this version: use --tracer ldc"}});
     expect_refused(run({"view", in("cube.obj")}), 1, "'view' is not built into this version");
+}
+
+TEST_F(Usage, RayTracingByTheDeviceWhereItHasIt) {
+    put("cube.obj", kCube);
+    put("rays.npy", rays_npy({0.5f, 0.5f, 3, 0, 0, 0, -1, 9}));
+    const std::vector<std::string> render = {"render", in("cube.obj"), "-o",  out("a.png"), "--size",
+                                             "16x16",  "--tracer",     "khr", "--stats",    out("a.json")},
+                                   trace = {"trace",         in("cube.obj"), "--rays", in("rays.npy"), "--out",
+                                            out("hits.npy"), "--tracer",     "khr",    "--stats",      out("t.json")},
+                                   compare = {"compare", in("cube.obj"), "-o",        out("r.html"),
+                                              "--size",  "16x16",        "--tracers", "khr,ldc"};
+    if (run(render).status != 0) {
+        for (const auto& command : {render, trace, compare})
+            expect_refused(run(command), 1, "lacks VK_KHR_acceleration_structure: use --tracer ldc");
+        return;
+    }
+    for (const auto& command : {render, trace, compare}) {
+        const Outcome done = run(command);
+        EXPECT_EQ(done.status, 0) << done.err;
+    }
+    for (const char* file : {"a.json", "t.json"}) {
+        const auto stats = nlohmann::json::parse(get(out(file)));
+        EXPECT_EQ(stats["tracer"], "khr");
+        EXPECT_EQ(stats["khr"]["structures"], 1);
+        EXPECT_EQ(stats["khr"]["built"], "once");
+        EXPECT_GT(stats["khr"]["bytes"], 0);
+        EXPECT_FALSE(stats.contains("ldc"));
+    }
 }
 
 TEST_F(Usage, CubeMapsTraceNoRays) {

@@ -1,0 +1,12 @@
+// A scene's bodies as the device's own ray tracing takes them.
+#pragma once
+
+#include "khr/structures.h"
+#include "scene/assembly.h"
+
+namespace peelray {
+
+/// Each body in parts that are all opaque or all masked, in the order of its triangles; all are to be kept.
+std::vector<StructureBody> structure_bodies(const Scene& scene, const Assembly& assembly);
+
+}  // namespace peelray
