@@ -121,7 +121,7 @@ TEST_F(VisibilityTest, HolesAreSeenThrough) {
                        raster = render(stage, black, with(camera, Visibility::raster));
     tally(compute, raster, 1e-6).expect(0.005, 101 * 67);
     size_t red = 0, green = 0;
-    for (const glm::vec4& pixel : compute.radiance) (pixel.r > 0.5f ? red : green)++;
+    for (const glm::vec4& pixel : compute.radiance) (pixel.x > 0.5f ? red : green)++;
     EXPECT_GT(red, 500u);
     EXPECT_GT(green, 1000u);
 }
