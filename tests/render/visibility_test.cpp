@@ -78,7 +78,7 @@ Stage all_kinds() {
     stage.add(ground(1000), lambert({1, 1, 1}));
     stage.add(parallelogram({-300, -200, 60}, {700, 0, 0}, {0, 500, 0}), lambert({1, 0, 0}));    // behind
     stage.add(parallelogram({1.5f, -50, -80}, {0, 0, 300}, {0.2f, 90, 0}), lambert({0, 1, 0}));  // beside, crossing
-    stage.add(sphere({-0.8f, 0.7f, 0}, 0.6f, 48), lambert({0, 0, 1}));
+    stage.add(sphere({-0.8f, 0.7f, 0}, 0.6f, 24), lambert({0, 0, 1}));
     stage.add(box({-0.4f, 0, 1}, {-0.1f, 0.3f, 1.3f}), lambert({1, 1, 0}));
     Node mirrored;
     mirrored.mesh = 3;
@@ -121,7 +121,7 @@ TEST_F(VisibilityTest, HolesAreSeenThrough) {
                        raster = render(stage, black, with(camera, Visibility::raster));
     tally(compute, raster, 1e-6).expect(0.005, 101 * 67);
     size_t red = 0, green = 0;
-    for (const glm::vec4& pixel : compute.radiance) (pixel.r > 0.5f ? red : green)++;
+    for (const glm::vec4& pixel : compute.radiance) (pixel.x > 0.5f ? red : green)++;
     EXPECT_GT(red, 500u);
     EXPECT_GT(green, 1000u);
 }
@@ -137,9 +137,11 @@ TEST_F(VisibilityTest, ManyLargeTrianglesFindRoom) {
         }
         RenderSettings settings = with(perspective({0, 0, 3}, {0, 0, 0}, 60), Visibility::compute);
         settings.aovs = false;
-        settings.width = settings.height = first == 0 ? 1024 : 96;
+        settings.width = settings.height = first == 0 ? 704 : 96;
         const RenderResult picture = render(stage, black, settings);
-        EXPECT_EQ(picture.stats.redone > 0, first == 0) << "40 triangles in 1024 blocks each, room for 16384";
+        settings.visibility = Visibility::raster;  // the build may be done again as well
+        EXPECT_EQ(picture.stats.redone > render(stage, black, settings).stats.redone, first == 0)
+            << "40 triangles in 484 blocks each, room for 16384";
         Tally result;
         for (const glm::vec4& pixel : picture.radiance)
             result.add(pixel == glm::vec4(1, 0, 0, 1), [] { return "another sheet"; });
