@@ -52,6 +52,15 @@ struct PeelrayTree {
     uint first[PEELRAY_TREE_LEVELS];
 };
 
+/// What a ray has cost: how often the traversal did each of these.
+struct PeelrayCounts {
+    uint steps;      ///< cells of any level that it stood in, empty boxes included
+    uint cells;      ///< lists of samples that it met: occupied voxels, or by pixel those that hold a sample
+    uint pixels;     ///< by pixel: pixels that it stood in, empty ones included
+    uint samples;    ///< samples tested
+    uint triangles;  ///< triangles tested (`exact`)
+};
+
 // Hit tests.
 #define PEELRAY_EXACT 0u      // the triangles themselves
 #define PEELRAY_PLANAR 1u     // the samples' planes
@@ -69,6 +78,7 @@ static_assert(sizeof(CubeGrid) == 32);
 static_assert(sizeof(PeelrayInstance) == 80);
 static_assert(sizeof(PeelrayBox) == 32);
 static_assert(sizeof(PeelrayTree) == 40);
+static_assert(sizeof(PeelrayCounts) == 20);
 }  // namespace peelray
 #endif
 #endif

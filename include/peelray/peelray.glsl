@@ -12,7 +12,8 @@
 //   vec2  PEELRAY_RANGE(uint i)       by pixel: least and greatest depth in a block or cell of the pyramid
 //   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` only)
 // and may define
-//   PEELRAY_COUNTERS  a uvec4 that counts steps, lists, samples tested, triangles tested
+//   PEELRAY_COUNTERS  a PeelrayCounts (peelray/cube.h) that is added to
+//   PEELRAY_COUNTED   a bool: whether it is; as a constant false counting costs nothing. Without it: true.
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
@@ -29,10 +30,13 @@
 #include "peelray/intersect.glsl"
 #include "peelray/peelray_sample.glsl"
 
+#ifndef PEELRAY_COUNTED
+#define PEELRAY_COUNTED true
+#endif
 #ifdef PEELRAY_COUNTERS
-#define PEELRAY_COUNT(component) PEELRAY_COUNTERS.component++
+#define PEELRAY_COUNT(what) { if (PEELRAY_COUNTED) PEELRAY_COUNTERS.what++; }
 #else
-#define PEELRAY_COUNT(component)
+#define PEELRAY_COUNT(what) {}
 #endif
 
 const uint PEELRAY_MISS = 0xffffffffu;
@@ -136,7 +140,7 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
 
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
 bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, inout PeelrayLocal r, inout PeelrayHit hit) {
-    PEELRAY_COUNT(w);
+    PEELRAY_COUNT(triangles);
     vec3 a, b, c;
     PEELRAY_TRIANGLE(id, a, b, c);
     float t;
@@ -195,7 +199,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     // then. Triangles are tested here and not in the inner loop, so that neighbouring rays test theirs together.
     while (true) {
         if (!more) {
-            PEELRAY_COUNT(x);
+            PEELRAY_COUNT(steps);
             // The cell's entry: a list of samples, or an empty box [lo, hi] of voxels.
             lo = hi = cell;
             const uvec3 top = uvec3(cell) >> 4u;
@@ -222,15 +226,13 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             }
             exits = vec3(up.x ? hi.x + 1 : lo.x, up.y ? hi.y + 1 : lo.y, up.z ? hi.z + 1 : lo.z) * r.inv - o_inv;
             s_out = min(exits.x, min(exits.y, exits.z));
-#ifdef PEELRAY_COUNTERS
-            if (more) PEELRAY_COUNT(y);
-#endif
+            if (more) PEELRAY_COUNT(cells);
         }
 
         uint candidate = PEELRAY_MISS;
         const vec3 o_cell = r.o - vec3(cell);
         while (more && candidate == PEELRAY_MISS) {
-            PEELRAY_COUNT(z);
+            PEELRAY_COUNT(samples);
             // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
             // word 1: slopes (2x14 bits: PEELRAY_SLOPE_RANGE), axis (2 bits), last of its list (1 bit)
             const uvec2 data = PEELRAY_SAMPLE(j);

@@ -41,7 +41,6 @@ bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, Pee
                            inout PeelrayHit hit) {
     bool found_one = false;
     for (; j < end; j += 4u) {
-        PEELRAY_COUNT(z);
         const uint last = end - 1u;
         const uvec2 a = PEELRAY_SAMPLE(j), b = PEELRAY_SAMPLE(min(j + 1u, last)), c = PEELRAY_SAMPLE(min(j + 2u, last)),
                     e = PEELRAY_SAMPLE(min(j + 3u, last));
@@ -53,6 +52,7 @@ bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, Pee
         const vec4 s_plane = (w + (su * centre.x + sv * centre.y) - o_pixel.z) * inv_den;
         const uint count = min(4u, end - j);
         for (uint k = 0u; k < count; k++) {
+            PEELRAY_COUNT(samples);
             if (!peelrayTestSample(place, ray, skip, options, j + k, w[k], vec2(su[k], sv[k]), inv_den[k], s_plane[k], s, s_out, low, high, centre,
                                    tolerance, o_pixel, d, inv, r, hit))
                 continue;
@@ -66,9 +66,10 @@ bool peelrayTestFourByFour(PeelrayInstance place, PeelrayRay ray, uint skip, Pee
 /// Hits on the samples of one pixel, while the ray is in its column, from s to s_out. `o`, `d`, `inv` as the LDI sees them.
 bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, uint list, ivec2 pixel, float tolerance, float s, float s_out,
                       vec3 o, vec3 d, vec3 inv, inout PeelrayLocal r, inout PeelrayHit hit) {
+    PEELRAY_COUNT(pixels);
     uint j = PEELRAY_OFFSET(list), end = PEELRAY_OFFSET(list + 1u);
     if (j == end) return false;
-    PEELRAY_COUNT(y);
+    PEELRAY_COUNT(cells);
     const vec3 o_pixel = vec3(o.xy - vec2(pixel), o.z);
     const vec2 centre = o_pixel.xy - 0.5;
     const float w_in = o.z + s * d.z, w_out = o.z + min(s_out, r.s_best) * d.z;
@@ -92,7 +93,7 @@ bool peelrayTestPixel(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayO
         return peelrayTestFourByFour(place, ray, skip, options, j, end, s, s_out, low, high, margin, centre, tolerance, o_pixel, d, inv, r, hit);
     bool found_one = false;
     for (; j < end; j++) {
-        PEELRAY_COUNT(z);
+        PEELRAY_COUNT(samples);
         // word 0: w (float); word 1: slopes (2x16 bits: PEELRAY_SLOPE_RANGE)
         const uvec2 data = PEELRAY_SAMPLE(j);
         const float w = uintBitsToFloat(data.x);
@@ -148,7 +149,7 @@ PeelrayWalk peelrayBeginWalk(PeelrayLocal r, PeelrayOptions options, uint axis, 
 /// One turn: down a level where the ray's depths meet the cell's range, else on to the next cell. Returns whether a sample was hit.
 bool peelrayStep(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayWalk walk, inout PeelrayLocal r,
                  inout PeelrayHit hit) {
-    PEELRAY_COUNT(x);
+    PEELRAY_COUNT(steps);
     const bool pyramid = options.traversal == PEELRAY_MIPMAP;
     const ivec2 block = ivec2(options.block);
     // The cell of this level that the ray stands in: pixels [lo, hi).
