@@ -325,6 +325,19 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
+/// What the rays of one kind cost in all (shaders/counting.glsl).
+struct CountTotals {
+    uint rays;
+    PeelrayCounts low;  ///< of sums in 64 bits
+    PeelrayCounts high;
+    PeelrayCounts largest;  ///< of a single ray
+};
+SHARED_SIZE(CountTotals, 64);
+#define COUNT_TRACED 0u  // what `trace` traces: reflection and refraction, the rays of a file
+#define COUNT_SHADOW 1u
+#define COUNT_AMBIENT 2u
+#define COUNT_KINDS 3u
+
 // --- A frame (src/render; shaders/primary.comp to tonemap.comp) ---
 
 struct GpuMaterial {

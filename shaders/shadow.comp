@@ -8,6 +8,7 @@ layout(constant_id = 1) const bool glass = false;  // the scene has surfaces tha
 layout(constant_id = 2) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 3) const uint batch = 0u;      // PEELRAY_ONE, ...
 layout(constant_id = 4) const bool masked = false;  // it has masked materials
+layout(constant_id = 5) const bool counting = false;
 PARAMS(LevelParams)
 #include "cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 10
@@ -19,6 +20,8 @@ BUFFER(, 22, PathNode, nodes)
 BUFFER(, 23, uint, queue)
 BUFFER(readonly, 24, GpuLight, lights)
 #include "alpha_test.glsl"
+#define COUNT_FIRST_BINDING 25
+#include "counting.glsl"
 #define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
 #include "peelray/peelray.glsl"
 #include "frame.glsl"
@@ -62,7 +65,10 @@ vec3 lightVisibility(uint index, Surface s, vec3 direction, SurfaceId from) {
     shadow_rays++;
     Ray ray = leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
     if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
-    return visibility(ray, from);
+    countNothing();
+    const vec3 share = visibility(ray, from);
+    countRay(COUNT_SHADOW, 0u, GLOBAL_INDEX);
+    return share;
 }
 
 vec3 skyVisibility(Surface s, uint seed, SurfaceId from) {
@@ -73,7 +79,10 @@ vec3 skyVisibility(Surface s, uint seed, SurfaceId from) {
     const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
     const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
     ambient_rays++;
-    return visibility(leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u)), from);
+    countNothing();
+    const vec3 share = visibility(leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u)), from);
+    countRay(COUNT_AMBIENT, 0u, GLOBAL_INDEX);
+    return share;
 }
 
 void main() {

@@ -3,12 +3,14 @@
 #include "common.glsl"
 #include "params.h"
 #include "trace_queue.glsl"
-layout(constant_id = 5) const uint batch = 0u;  // PEELRAY_ONE, ...
+layout(constant_id = 6) const uint batch = 0u;  // PEELRAY_ONE, ...
 
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= queueLength()) return;
     const Ray ray = rays[i];
     const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch);
+    countNothing();
     queueStore(i, ray, peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), queueSkip(i), options));
+    countRay(COUNT_TRACED, 0u, i);
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "gpu/device.h"
 #include "render/renderer.h"
@@ -19,6 +20,10 @@ std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice&
 /// the cubes' grids; `shown`: instances of each; `box`: of the whole scene.
 nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
                                   const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice);
+/// What rays of some kinds cost, named by `names`: means and the most of a single ray.
+nlohmann::ordered_json counter_stats(const AllKindCosts& costs, std::span<const char* const> names);
+/// All device memory by part and buffer, now and at the peak: sums are those of the device.
+nlohmann::ordered_json memory_stats(const std::vector<Allocation>& now, const std::vector<Allocation>& peak);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.

@@ -424,6 +424,7 @@ void Commands::flush() {
 void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {
     if (offset + data.size() > buffer.bytes()) fail("an upload to {} is too long (a programming error)", buffer.name());
     submit();
+    const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
         if (!staging_up_ || staging_up_.bytes() < bytes)
@@ -439,6 +440,7 @@ void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, u
     if (offset + data.size() > buffer.bytes())
         fail("a download of {} is too long (a programming error)", buffer.name());
     submit();
+    const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
         if (!staging_down_ || staging_down_.bytes() < bytes)

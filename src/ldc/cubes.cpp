@@ -74,6 +74,7 @@ TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vert
     // Two bits of a sample's id hold its axis.
     if (indices.size() >= 1u << 30)
         fail("the scene has {} triangles, but cubes hold fewer than 2^30: split the scene", indices.size());
+    const MemoryPart part(device, "triangles");
     positions = Buffer(device, "vertex positions", vertices.size_bytes());
     triangles = Buffer(device, "triangle indices", indices.size_bytes());
     Commands commands(device);
@@ -101,6 +102,7 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
     : device_(device), bodies_(std::move(bodies)), sampling_(sampling), layout_(layout) {
     assert(!bodies_.empty());
     check_block(layout.block);
+    const MemoryPart part(device, "cubes");
     Commands commands(device);
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
@@ -126,6 +128,7 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
         fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
              size.nodes, size.samples);
+    const MemoryPart part(device_, "cubes");
     grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
     grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
     const uint64_t attributes = layout_.streams ? 8 : 0;

@@ -7,6 +7,7 @@
 namespace peelray {
 
 PathQueues::PathQueues(Device& device) : device_(device) {
+    const MemoryPart part(device, "frame");
     counters_ = Buffer(device, "queue counters", QUEUE_COUNTERS * 4);
     readback_ = Buffer(device, "queue counters readback", QUEUE_COUNTERS * 4, Buffer::Where::readback);
     groups_ = Buffer(device, "queue workgroups", QUEUE_LEVELS * 12);

@@ -34,9 +34,12 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
     build_ms_ += commands.elapsed_ms();
 }
 
-void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
+void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
+                      const CountBuffers* counting) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
-    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
+    RayQueue queue{rays, nullptr, count};
+    queue.counting = counting;
+    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, queue, hits_,
                  {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
     record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
 }

@@ -1,6 +1,7 @@
 // A scene for rays alone: cubes and what tells whose triangles were hit, nothing to shade with but what tells of holes.
 #pragma once
 
+#include "ldc/tracer.h"
 #include "render/scene_cubes.h"
 
 namespace peelray {
@@ -13,7 +14,9 @@ class RayScene {
     RayScene& operator=(const RayScene&) = delete;
 
     /// Records the tracing of `count` rays (Ray each): file_hits[i] (FileHit each) for rays[i], see record_trace.
-    void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
+    /// `counting`: where it is counted what they cost, if that is not null.
+    void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
+                const CountBuffers* counting = nullptr);
 
     const SceneCubes& cubes() const { return cubes_; }
     std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }

@@ -64,6 +64,7 @@ struct Renderer::Impl {
     PathQueues queues;
     Commands commands;
     ViewTarget view;
+    std::unique_ptr<CostCounter> counter;  ///< where it is to be counted
     Buffer picture, encoded, aov_buffer;
 
     RenderSettings settings;
@@ -136,6 +137,7 @@ void Renderer::Impl::check_settings() const {
 void Renderer::Impl::prepare_images() {
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     view.resize(device, settings.width, settings.height);
+    const MemoryPart part(device, "images");
     ensure_size(device, picture, "picture", pixels * 16);
     ensure_size(device, encoded, "encoded picture", pixels * 4);
 }
@@ -154,6 +156,7 @@ void Renderer::Impl::prepare_cubes() {
 }
 
 void Renderer::Impl::prepare_maps() {
+    const MemoryPart part(device, "cube maps");
     if (!maps) {
         maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment));
     } else if (maps_moved) {
@@ -265,8 +268,11 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
     const PathLevel& level = queues.level(p.level);
     const bool traced = frame.effects & (EFFECT_SHADOW | EFFECT_AMBIENT);
     // Without cubes their bindings still need buffers; the shader does not read them then.
+    const CountBuffers counting = counter ? counter->level(p.level) : CountBuffers{level.nodes, level.nodes};
     const std::vector<Binding> others = surface_bindings(scene, view.frame,
-                                                         {{"instance_boxes", scene.instances.boxes()},
+                                                         {{"costs", counting.costs},
+                                                          {"count_totals", counting.totals},
+                                                          {"instance_boxes", scene.instances.boxes()},
                                                           {"instance_cubes", scene.instances.cubes()},
                                                           {"rays", level.rays},
                                                           {"states", level.states},
@@ -276,9 +282,9 @@ void Renderer::Impl::record_shadow(const LevelParams& p) {
                                                           {"lights", scene.lights}});
     const std::vector<Binding> bindings = sample_bindings(cubes->cubes(), scene.base_colors.materials, others);
     commands.run_indirect(
-        device.pass("shadow",
-                    {uint32_t(hit), traced && scene.has_glass, uint32_t(settings.layout.traversal),
-                     shader_constant(settings.layout.batch), scene.triangles.masks && traced && hit == HitTest::exact}),
+        device.pass("shadow", {uint32_t(hit), traced && scene.has_glass, uint32_t(settings.layout.traversal),
+                               shader_constant(settings.layout.batch),
+                               scene.triangles.masks && traced && hit == HitTest::exact, counter != nullptr}),
         bindings, p, queues.groups(), p.level * 12);
 }
 
@@ -291,9 +297,11 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
         if (i > 0) {
             record_shadow(level_params(i - 1, sample, first_row));
             const PathLevel& level = queues.level(i);
-            record_trace(commands, device, traced(),
-                         {level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull},
-                         level.hits, {hit, settings.tolerance, false, Edges::single});
+            RayQueue queue{level.rays, &level.skip, level.capacity, &queues.counters(), i, &queues.groups(), i * 12ull};
+            const CountBuffers counting = counter ? counter->level(i) : CountBuffers{level.hits, level.hits};
+            if (counter) queue.counting = &counting;
+            record_trace(commands, device, traced(), queue, level.hits,
+                         {hit, settings.tolerance, false, Edges::single});
         }
         record_scatter(p);
     }
@@ -302,6 +310,7 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
+    if (counter) counter->record_band(commands, queues, last_level + 1);
     record_primary(commands, device, scene, view, queues, level_params(0, sample, first_row));
     if (settings.tracer == Tracer::cubemap)
         maps->record_shading(commands, view.frame, queues.level(0), level_params(0, sample, first_row));
@@ -320,6 +329,11 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
                   {"queue", queues.counters()},
                   {"picture", picture}},
                  p, groups_for(p.capacity, 64));
+    if (counter) {
+        std::vector<LevelParams> params;
+        for (uint32_t i = 0; i <= last_level; i++) params.push_back(level_params(i, sample, first_row));
+        counter->record_sums(commands, queues, view.frame, params);
+    }
     commands.copy(queues.counters(), queues.readback(), QUEUE_COUNTERS * 4);
 }
 
@@ -333,6 +347,7 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
             count_times();
             if (progress) progress(0);  // where an interrupt ends the work
         });
+    if (counter) counter->record_begin(commands, uint64_t(settings.width) * settings.height);
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
             if (row == 0) record_visibility(sample);
@@ -344,6 +359,7 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
                 if (progress) progress((sample + double(row) / settings.height) / settings.spp);
             }
             count_times();  // of the turn that fitted: its rays are counted, too
+            if (counter) counter->finish();
             rays.reflection += queues.count(QUEUE_REFLECTION);
             rays.refraction += queues.count(QUEUE_REFRACTION);
             rays.shadow += queues.count(QUEUE_SHADOW);
@@ -365,6 +381,7 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
             "auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a "
             "smaller --size",
             settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
+    const MemoryPart part(device, "images");
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
     record_visibility(0);
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
@@ -392,6 +409,7 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
 
 /// The paper's Figure 7, in render targets.
 void Renderer::Impl::render_ray_setup(Aovs& aovs) {
+    const MemoryPart part(device, "images");
     const uint32_t pixels = settings.width * settings.height;
     RasterSetup setup;
     setup.colors.assign(4, VK_FORMAT_R32G32B32A32_SFLOAT);
@@ -428,12 +446,18 @@ void Renderer::Impl::render_ray_setup(Aovs& aovs) {
     }
 }
 
-Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment)
-    : impl_(std::make_unique<Impl>(device, scene, assembly, environment)) {}
+/// The part of the program that what is uploaded is accounted for as.
+static constexpr const char* kScenePart = "scene";
+
+Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment) {
+    const MemoryPart part(device, kScenePart);
+    impl_ = std::make_unique<Impl>(device, scene, assembly, environment);
+}
 
 Renderer::~Renderer() = default;
 
 void Renderer::pose(const Scene& scene) {
+    const MemoryPart part(impl_->device, kScenePart);
     impl_->moment = &scene;
     impl_->moved = impl_->scene.pose(impl_->commands, scene);
     impl_->maps_moved = true;
@@ -451,6 +475,8 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.moved = moved;
     if (settings.tracer == Tracer::cubemap) stats.maps = maps->stats();
     if (settings.tracer != Tracer::ldc) return;
+    stats.counted = counter != nullptr;
+    if (counter) stats.costs = counter->sums();
     stats.rebuilt = rebuilt;
     stats.cubes = cubes->stats();
     stats.bodies = cubes->cubes().download_bodies(commands);
@@ -460,9 +486,12 @@ void Renderer::Impl::describe(RenderStats& stats) {
 
 RenderResult Renderer::render(const RenderSettings& settings, const std::function<void(double)>& progress) {
     Impl& r = *impl_;
+    const MemoryPart part(r.device, "frame");
     r.settings = settings;
     r.check_settings();
     r.redone = 0;
+    const bool counts = settings.counters && settings.tracer == Tracer::ldc;
+    if (counts != (r.counter != nullptr)) r.counter = counts ? std::make_unique<CostCounter>(r.device) : nullptr;
     r.prepare_images();
     r.prepare_cubes();
     r.prepare_frame();
@@ -503,7 +532,10 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     result.encoded = r.commands.download<uint32_t>(r.encoded, pixels);
     if (settings.aovs) r.render_aovs(result.aovs);
     if (settings.aovs && settings.ray_setup) r.render_ray_setup(result.aovs);
+    if (r.counter) result.aovs.costs = r.counter->download_pixels(r.commands, pixels);
     stats.peak_bytes = r.device.peak_allocated();
+    stats.memory = r.device.allocations();
+    stats.peak_memory = r.device.peak_allocations();
     return result;
 }
 

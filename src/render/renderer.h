@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/cost_counter.h"
 #include "render/cube_maps.h"
 #include "render/scene_cubes.h"
 #include "scene/picture.h"
@@ -29,7 +30,8 @@ struct RenderSettings : PictureSettings {
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;         ///< builder, traversal and what belongs to them
     Tracer tracer = Tracer::ldc;
-    uint32_t repeat = 1;  ///< frames to render; times are medians over them
+    bool counters = false;  ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
+    uint32_t repeat = 1;    ///< frames to render; times are medians over them
 };
 
 struct RenderStats {
@@ -53,10 +55,13 @@ struct RenderStats {
     uint32_t rebuilt = 0;         ///< cubes that were built for this frame
     uint32_t moved = 0;           ///< instances that stand elsewhere than in the frame before
     uint64_t scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
+    std::vector<Allocation> memory, peak_memory;  ///< all of the device's when the picture was done, and at the peak
     HitTest hit = HitTest::exact;
     CubeChoice choice;  ///< of the cubes
     CubeMaps::Stats maps;
-    uint32_t redone = 0;  ///< how often something did not fit and was done again
+    bool counted = false;  ///< with RenderSettings::counters
+    AllKindCosts costs;    ///< of the last frame
+    uint32_t redone = 0;   ///< how often something did not fit and was done again
 };
 
 struct RenderResult : Picture {
