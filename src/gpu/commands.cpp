@@ -461,4 +461,12 @@ void grow(Device& device, Commands& commands, Buffer& buffer, const std::string&
     buffer = std::move(larger);
 }
 
+void shrink(Device& device, Commands& commands, Buffer& buffer, uint64_t bytes) {
+    if (!buffer || bytes == 0 || buffer.bytes() <= std::max<uint64_t>(bytes, 16)) return;
+    Buffer smaller(device, buffer.name(), bytes);
+    commands.copy(buffer, smaller, bytes);
+    commands.submit();
+    buffer = std::move(smaller);
+}
+
 }  // namespace peelray

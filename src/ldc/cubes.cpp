@@ -144,6 +144,20 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
     grow(device_, commands, voxel_table, "the cubes' voxels", size.nodes * 256, kept.nodes * 256);
 }
 
+void Cubes::trim(const TableSize& size) {
+    const MemoryPart part(device_, "cubes");
+    Commands commands(device_);  // of its own: the builder's hold the times of the build
+    const auto to = [&](Buffer& buffer, uint64_t bytes) { shrink(device_, commands, buffer, bytes); };
+    to(samples, size.samples * 8);
+    to(sample_ids, size.samples * 4);
+    to(sample_attributes, size.samples * 8);
+    to(pixel_offsets, size.cells * 4);
+    to(pixel_ranges, size.cells * 4);
+    to(top_table, size.cells * 8);
+    to(node_table, size.occupied * 256);
+    to(voxel_table, size.nodes * 256);
+}
+
 uint32_t Cubes::pyramid_levels() const {
     uint32_t largest = 16;
     for (const CubeBody& body : bodies_) largest = std::max(largest, round_resolution(body.resolution));
