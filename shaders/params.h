@@ -323,6 +323,18 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
+/// What the rays of one kind cost in all (shaders/counting.glsl).
+struct CountTotals {
+    uint rays;
+    PeelrayCounts low;  ///< of sums in 64 bits
+    PeelrayCounts high;
+    PeelrayCounts largest;  ///< of a single ray
+};
+SHARED_SIZE(CountTotals, 64);
+#define COUNT_TRACED 0u  // what `trace` traces: reflection and refraction, the rays of a file
+#define COUNT_SHADOW 1u  // to the lamps and to the sky
+#define COUNT_KINDS 2u
+
 // --- The device's own ray tracing (src/khr; shaders/khr_*, trace_khr.rgen, trace_shadow_khr*.rgen) ---
 
 /// A body's acceleration structure.

@@ -2,6 +2,7 @@
 #version 460
 #include "common.glsl"
 #include "params.h"
+#define COUNT_RAYS 4
 #include "trace_queue.glsl"
 
 void main() {
@@ -19,10 +20,12 @@ void main() {
     }
     const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE, 0u);
     PeelrayHit found[4];
+    countNothing();
     peelrayTraceFour(params.tree.instances, own_rays, own, options, found);
     for (int k = 0; k < 4; k++) {
         const uint i = first + uint(k);
         if (i >= count) return;
         queueStore(i, rays[i], found[k]);
+        countRay(COUNT_TRACED, uint(k), i);
     }
 }

@@ -5,7 +5,8 @@ layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...
 layout(constant_id = 2) const bool precise_edges = false;
 layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 4) const bool masked = false;  // the scene has masked materials
-layout(constant_id = 7) const bool deferred = false;  // triangles are tested after their list's samples
+layout(constant_id = 5) const bool counting = false;
+layout(constant_id = 8) const bool deferred = false;  // triangles are tested after their list's samples
 PARAMS(TraceParams)
 #include "cube_fetch.glsl"
 BUFFER_ALIGNED(readonly, 10, Ray, rays)
@@ -15,6 +16,8 @@ BUFFER(writeonly, 13, Hit, hits)
 #define BASE_COLOR_FIRST_BINDING 14
 #include "base_color_buffers.glsl"
 #include "alpha_test.glsl"
+#define COUNT_FIRST_BINDING 20
+#include "counting.glsl"
 #define PEELRAY_PRECISE precise_edges
 #define PEELRAY_DEFER deferred
 #define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))

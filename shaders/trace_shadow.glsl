@@ -49,11 +49,17 @@ void shadowRay(uint i, uint capacity) {
     const Ray stored = shadow_rays[i];
     const PeelrayRay ray = PeelrayRay(stored.origin, stored.tmin, stored.direction, stored.tmax);
     const uvec2 skip = uvec2(shadow_skip[i].instance, shadow_skip[i].triangle);
+#ifdef COUNT_FIRST_BINDING
+    countNothing();
+#endif
 #ifdef SHADOW_THROUGH_GLASS
     const vec3 share = shadowShare(ray, skip);
     if (share != vec3(1)) shadow_light[i] *= share;
 #else
     if (traceShadow(ray, skip, true).triangle != PEELRAY_MISS) shadow_light[i] = vec3(0);
+#endif
+#ifdef COUNT_FIRST_BINDING
+    countRay(COUNT_SHADOW, 0u, i);
 #endif
 }
 

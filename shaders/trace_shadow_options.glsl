@@ -7,3 +7,6 @@ layout(constant_id = 4) const uint instance_count = 0u;  // up to 8; 0: any numb
 layout(constant_id = 5) const bool deferred = false;     // triangles are tested after their list's samples
 #define PEELRAY_DEFER deferred
 #define shadowOptions(any) PeelrayOptions(any, hit_test, traversal, params.tolerance, params.block, batch, instance_count)
+layout(constant_id = 6) const bool counting = false;
+#define COUNT_FIRST_BINDING 40
+#include "counting.glsl"

@@ -14,6 +14,7 @@
 // and may define
 //   PEELRAY_COUNTERS  a PeelrayCounts (peelray/cube.h) that is added to
 //   PEELRAY_COUNTED   a bool: whether it is; as a constant false counting costs nothing. Without it: true.
+//   PEELRAY_COUNT_RAY(k)   a statement: PEELRAY_COUNTERS are those of the k-th ray from here on (peelrayTraceFour)
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
@@ -33,13 +34,16 @@
 #include "peelray/peelray_sample.glsl"
 #include "peelray/ray.glsl"
 
-#ifdef PEELRAY_COUNTERS
 #ifndef PEELRAY_COUNTED
 #define PEELRAY_COUNTED true
 #endif
+#ifdef PEELRAY_COUNTERS
 #define PEELRAY_COUNT(what) { if (PEELRAY_COUNTED) PEELRAY_COUNTERS.what++; }
 #else
 #define PEELRAY_COUNT(what) {}
+#endif
+#ifndef PEELRAY_COUNT_RAY
+#define PEELRAY_COUNT_RAY(k)
 #endif
 
 #ifdef PEELRAY_PRECISE

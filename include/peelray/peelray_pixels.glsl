@@ -271,7 +271,8 @@ void peelrayTraceFour(uint instances, PeelrayRay rays[4], uvec2 skips[4], Peelra
             PEELRAY_EACH_OF_FOUR(walks[k].done = true;
                                  if (enters[k] && !(options.any_hit && found[k])) walks[k] = peelrayBeginWalk(r[k], options, axis, size, first);)
             while (!(walks[0].done && walks[1].done && walks[2].done && walks[3].done)) {
-                PEELRAY_EACH_OF_FOUR(if (!walks[k].done && peelrayStep(place, rays[k], skips[k].x == instance ? skips[k].y : PEELRAY_MISS,
+                PEELRAY_EACH_OF_FOUR(PEELRAY_COUNT_RAY(k)
+                                     if (!walks[k].done && peelrayStep(place, rays[k], skips[k].x == instance ? skips[k].y : PEELRAY_MISS,
                                                                        options, walks[k], r[k], hits[k])) found[k] = true;)
             }
             first += uint(size.x * size.y);

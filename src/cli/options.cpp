@@ -269,13 +269,20 @@ void add_render(CLI::App& program, RenderArguments& a) {
     const char* output = "More output";
     add_parsed(
         app, "--aov", a.aovs, parse_aovs,
-        "a list out of depth,normal,albedo,position,triangle,material,reflection,box,directions, or all",
+        "a list out of depth,normal,albedo,position,triangle,material,reflection,box,directions,cost_steps,cost_cells,"
+        "cost_pixels,cost_samples,cost_triangles, or all",
         "also write these to NAME.KIND.exr beside NAME.png: a list out of "
         "depth,normal,albedo,position,triangle,material, or all of them; or out of reflection,box,directions: what "
-        "the paper sets up for mirror rays (its Figure 7)")
+        "the paper sets up for mirror rays (its Figure 7); or out of cost_steps,cost_cells,cost_pixels,cost_samples,"
+        "cost_triangles: what all rays of a pixel cost in the cubes, with a heat map NAME.KIND.png")
         ->type_name("LIST")
         ->group(output);
     app.add_option("--stats", a.stats, "also write times, rays and memory as JSON")->type_name("FILE")->group(output);
+    app.add_flag(
+           "--counters", a.counters,
+           "count what rays cost, for the stats: cells stepped to, lists met, pixels, samples and triangles tested; "
+           "times are then not to be trusted")
+        ->group(output);
     app.footer(builtin_list() +
                "\nExamples:\n"
                "  peelray render builtin:teapots -o teapots.png --spp 16\n"
@@ -338,6 +345,10 @@ void add_trace(CLI::App& program, TraceArguments& a) {
     app.add_option("--out", a.hits,
                    "hits to write: structured (n): t f4 (+inf: a miss), triangle u4 (in file order), u f4, v f4")
         ->required()
+        ->type_name("FILE.npy");
+    app.add_option("--counters", a.counters,
+                   "also write what each ray cost: structured (n): steps, cells, pixels, samples, triangles, u4 each; "
+                   "times are then not to be trusted")
         ->type_name("FILE.npy");
     app.add_flag("--any-hit", a.any_hit, "stop at any hit, not only at the nearest: for shadow rays");
     app.add_option("--stats", a.stats, "also write times and memory as JSON")->type_name("FILE");

@@ -1,8 +1,12 @@
 #include "cli/picture_files.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text.h"
+#include "cli/values.h"
 #include "image/image.h"
+#include "image/metrics.h"
 
 namespace peelray {
 
@@ -20,6 +24,20 @@ Format format_of(const fs::path& path) {
     fail("cannot tell the picture's format from '{}': name it .png, .exr or .hdr", path.string());
 }
 
+fs::path aov_path(const fs::path& output, const std::string& name) {
+    return fs::path(output).replace_extension(name + ".exr");
+}
+
+/// Numbers as they are, and in colours.
+void write_costs(const Picture& picture, const RayCostField& field, const std::string& name, const fs::path& output) {
+    std::vector<float> counts;
+    for (const RayCosts& costs : picture.aovs.costs) counts.push_back(float(costs.*field.value));
+    write_exr_channels(aov_path(output, name), picture.width, picture.height, {field.name}, {counts});
+    const float scale = 1 / float(std::max(largest_of(picture.aovs.costs, field), 1u));
+    for (float& count : counts) count *= scale;
+    write_png(heat_map_path(output, name), colorize({picture.width, picture.height, counts}));
+}
+
 void write_aovs(const Picture& result, const std::vector<std::string>& names, const fs::path& output) {
     const Aovs& a = result.aovs;
     const auto component = [](const std::vector<glm::vec4>& values, int i) {
@@ -33,6 +51,7 @@ void write_aovs(const Picture& result, const std::vector<std::string>& names, co
                                const std::vector<std::vector<float>>& values) {
             write_exr_channels(path, result.width, result.height, channels, values);
         };
+        if (const RayCostField* field = cost_field(name)) write_costs(result, *field, name, output);
         if (name == "depth") write({"Z"}, {a.depth});
         if (name == "triangle") write({"triangle"}, {a.triangle});
         if (name == "material") write({"material"}, {a.material});
@@ -59,9 +78,14 @@ void check_picture_name(const fs::path& path) {
     format_of(path);
 }
 
-fs::path aov_path(const fs::path& output, const std::string& name) {
-    fs::path path = output;
-    return path.replace_extension(name + ".exr");
+std::vector<fs::path> aov_paths(const fs::path& output, const std::string& name) {
+    std::vector<fs::path> paths = {aov_path(output, name)};
+    if (cost_field(name)) paths.push_back(heat_map_path(output, name));
+    return paths;
+}
+
+fs::path heat_map_path(const fs::path& output, const std::string& name) {
+    return fs::path(output).replace_extension(name + ".png");
 }
 
 void write_picture(const Picture& picture, const std::vector<std::string>& aovs, const fs::path& path) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "cli/values.h"
 #include "image/image.h"
 
 namespace peelray {
@@ -181,6 +182,26 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.shadow = has("shadow");
     settings.ambient = has("ambient");
     return settings;
+}
+
+static bool wants_costs(const RenderArguments& a) {
+    return std::any_of(a.aovs.begin(), a.aovs.end(), [](const std::string& name) { return cost_field(name); });
+}
+
+RenderSettings settings_of(const RenderArguments& a) {
+    RenderSettings settings = settings_of(static_cast<const PictureArguments&>(a));
+    settings.counters = a.counters || wants_costs(a);
+    settings.aovs =
+        std::any_of(a.aovs.begin(), a.aovs.end(), [](const std::string& name) { return !cost_field(name); });
+    settings.ray_setup = wants_ray_setup(a.aovs);
+    return settings;
+}
+
+void check_counters(const RenderArguments& a) {
+    const char* option = a.counters ? "--counters" : wants_costs(a) ? "--aov cost_..." : nullptr;
+    if (option && a.tracing.tracer != "ldc")
+        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none", option, a.tracing.tracer);
+    if (a.counters && a.stats.empty()) fail("what --counters counts goes into the stats: name a file (--stats)");
 }
 
 const Geometry& PreparedScene::geometry() {

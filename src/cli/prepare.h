@@ -35,6 +35,10 @@ void choose_tracing(RenderSettings& settings, const TracingArguments& tracing);
 void choose_hit(RenderSettings& settings, const std::string& hit);
 /// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);
+/// The same with what goes into other files than the picture.
+RenderSettings settings_of(const RenderArguments& arguments);
+/// Throws Error where what is to be counted cannot be or goes nowhere.
+void check_counters(const RenderArguments& arguments);
 /// Loads the scene and applies --material, --floor, --time, the camera and the light. Throws Error.
 PreparedScene prepare_scene(const PictureArguments& arguments);
 /// Moves a prepared scene with an animation to another moment: triangles, camera and lights are then those of `time`.

@@ -75,6 +75,7 @@ struct SequenceArguments {
 struct RenderArguments : PictureArguments {
     std::filesystem::path output, stats;
     std::vector<std::string> aovs;
+    bool counters = false;
     SequenceArguments sequence;
 
     bool is_sequence() const { return sequence.frames || sequence.turntable; }
@@ -89,7 +90,7 @@ struct CompareArguments : PictureArguments {
 
 struct TraceArguments {
     std::string scene;
-    std::filesystem::path rays, hits, stats;
+    std::filesystem::path rays, hits, stats, counters;
     bool any_hit = false;
     uint32_t repeat = 1;
     TracingArguments tracing;

@@ -31,14 +31,14 @@ void run_render(const RenderArguments& a) {
     a.tracing.check();
     check_ranges(a);
     check_single(a);
+    check_counters(a);
     check_picture_name(a.output);
     if (a.tracing.tracer == "reference" && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
-    RenderSettings settings = settings_of(a);
-    settings.aovs = !a.aovs.empty();
-    settings.ray_setup = wants_ray_setup(a.aovs);
+    const RenderSettings settings = settings_of(a);
     std::vector<fs::path> outputs = {a.output};
-    for (const std::string& name : a.aovs) outputs.push_back(aov_path(a.output, name));
+    for (const std::string& name : a.aovs)
+        for (const fs::path& path : aov_paths(a.output, name)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
@@ -46,6 +46,10 @@ void run_render(const RenderArguments& a) {
     watch_interrupts();
     const MadePicture made = PictureMaker(scene, a).make(a.tracing.tracer, settings);
     write_picture(made.picture, a.aovs, a.output);
+    for (const std::string& name : a.aovs)
+        if (const RayCostField* field = cost_field(name))
+            print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, name).string(),
+                                   largest_of(made.picture.aovs.costs, *field)));
     if (!a.stats.empty()) write_json(a.stats, made.stats);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(a, made, scene.triangles, seconds);

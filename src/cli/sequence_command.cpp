@@ -69,9 +69,7 @@ class Run {
 };
 
 MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
-    RenderSettings settings = settings_of(arguments_);
-    settings.aovs = !arguments_.aovs.empty();
-    settings.ray_setup = wants_ray_setup(arguments_.aovs);
+    const RenderSettings settings = settings_of(arguments_);
     try {
         return maker_.make(arguments_.tracing.tracer, settings, sequence_.moment(frame), progress);
     } catch (const Interrupted&) {
@@ -152,7 +150,8 @@ void check_files(const RenderArguments& a, const FramePattern& pattern, const Se
     if (is_frame(a.stats)) fail("{} would be written twice: give each output a name of its own", a.stats.string());
     const fs::path first = pattern.file(sequence.frames.first);
     std::vector<fs::path> outputs = {first, manifest_path(a.output)};
-    for (const std::string& kind : a.aovs) outputs.push_back(aov_path(first, kind));
+    for (const std::string& kind : a.aovs)
+        for (const fs::path& path : aov_paths(first, kind)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, inputs);
 }
@@ -168,7 +167,9 @@ class Finished {
         const auto time = fs::last_write_time(file, error_);
         if (error_) return false;
         const bool whole = std::all_of(aovs_.begin(), aovs_.end(), [&](const std::string& kind) {
-            return fs::exists(aov_path(file, kind), error_);
+            const std::vector<fs::path> paths = aov_paths(file, kind);
+            return std::all_of(paths.begin(), paths.end(),
+                               [&](const fs::path& path) { return fs::exists(path, error_); });
         });
         if (whole && time >= since_) return true;
         outdated++;
@@ -266,6 +267,7 @@ void render_video(const RenderArguments& a, const Sequence& sequence) {
 void run_sequence(const RenderArguments& a) {
     a.tracing.check();
     check_ranges(a);
+    check_counters(a);
     const Sequence sequence = plan_sequence(a);
     if (is_video(a.output)) return render_video(a, sequence);
     if (sequence.numbers().empty()) {

@@ -1,6 +1,7 @@
 #include "cli/stats.h"
 
 #include <fstream>
+#include <map>
 
 #include "base/error.h"
 #include "cli/program.h"
@@ -89,6 +90,50 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
     return json;
 }
 
+Json counter_stats(const AllKindCosts& costs, std::span<const char* const> names) {
+    Json json = {{"times", "counting slows the rays: the times here are not to be trusted"}};
+    for (size_t kind = 0; kind < names.size(); kind++) {
+        const KindCosts& cost = costs[kind];
+        Json mean, largest;
+        for (size_t i = 0; i < kRayCostFields.size(); i++) {
+            mean[kRayCostFields[i].name] = cost.mean(i);
+            largest[kRayCostFields[i].name] = cost.largest.*kRayCostFields[i].value;
+        }
+        json[names[kind]] = {{"rays", cost.rays}, {"mean", mean}, {"largest", largest}};
+    }
+    return json;
+}
+
+static Json allocation_stats(const std::vector<Allocation>& allocations) {
+    uint64_t sum = 0;
+    std::map<std::string, std::map<std::string, uint64_t>> parts;
+    for (const Allocation& allocation : allocations) {
+        sum += allocation.bytes;
+        parts[allocation.part][allocation.name] += allocation.bytes;
+    }
+    Json json = {{"bytes", sum}, {"parts", Json::object()}};
+    for (const auto& [part, buffers] : parts) {
+        uint64_t bytes = 0;
+        for (const auto& [name, size] : buffers) bytes += size;
+        json["parts"][part] = {{"bytes", bytes}, {"buffers", buffers}};
+    }
+    return json;
+}
+
+Json memory_stats(const std::vector<Allocation>& now, const std::vector<Allocation>& peak) {
+    Json json = allocation_stats(now);
+    json["peak"] = allocation_stats(peak);
+    return json;
+}
+
+/// Of a picture; `costs`: of its pixels.
+static Json picture_counters(const AllKindCosts& kinds, const std::vector<RayCosts>& costs) {
+    constexpr const char* names[] = {"reflection_and_refraction", "shadow"};
+    Json json = counter_stats(kinds, names);
+    for (const RayCostField& field : kRayCostFields) json["largest_of_a_pixel"][field.name] = largest_of(costs, field);
+    return json;
+}
+
 Json ray_stats(const RayCounts& rays) {
     return {{"primary", rays.primary},
             {"reflection", rays.reflection},
@@ -164,6 +209,7 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
                          {"cubes_reused", s.cubes.bodies - s.rebuilt},
                          {"instances_transformed", s.moved}};
     }
+    if (s.counted) json["counters"] = picture_counters(s.costs, result.aovs.costs);
     if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
     json["visibility"] = s.visibility == Visibility::compute ? "compute" : "raster";
     if (s.tracer == Tracer::khr) json["khr"] = structure_stats(s.structures, s.update);
@@ -174,6 +220,7 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
                             {"build_scratch", s.cubes.scratch_bytes + s.structures.scratch_bytes},
                             {"frame", s.frame_bytes},
                             {"peak", s.peak_bytes}};
+    json["memory"] = memory_stats(s.memory, s.peak_memory);
     json["redone"] = s.redone;
     return json;
 }

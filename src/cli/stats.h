@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "gpu/device.h"
 #include "render/renderer.h"
@@ -21,6 +22,10 @@ nlohmann::ordered_json cube_stats(const SceneCubes::Stats& cubes, const std::vec
                                   const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice);
 /// The acceleration structures of --tracer khr. `update`: of what is not kept.
 nlohmann::ordered_json structure_stats(const Structures::Stats& structures, StructureUpdate update);
+/// What rays of some kinds cost, named by `names`: means and the most of a single ray.
+nlohmann::ordered_json counter_stats(const AllKindCosts& costs, std::span<const char* const> names);
+/// All device memory by part and buffer, now and at the peak: sums are those of the device.
+nlohmann::ordered_json memory_stats(const std::vector<Allocation>& now, const std::vector<Allocation>& peak);
 /// Rays by kind.
 nlohmann::ordered_json ray_stats(const RayCounts& rays);
 /// All of a picture that the GPU rendered.

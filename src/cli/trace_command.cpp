@@ -16,6 +16,9 @@ namespace {
 /// What a run of `peelray trace` found out.
 struct Traced {
     std::vector<HitRecord> hits;
+    bool counted = false;
+    std::vector<RayCosts> costs;  ///< of each ray, if counted
+    AllKindCosts sums;
     double trace_ms = 0;  ///< median over the repetitions
     size_t found = 0;
 };
@@ -24,10 +27,18 @@ struct Traced {
 Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>& rays, const TraceArguments& a) {
     static_assert(sizeof(RayRecord) == sizeof(Ray) && sizeof(HitRecord) == sizeof(FileHit));
     Traced result;
+    const MemoryPart part(device, "rays");
     Commands commands(device);
     const size_t batch = std::min<size_t>(std::max<size_t>(rays.size(), 1), 2u << 20);
     Buffer ray_buffer(device, "rays", batch * sizeof(Ray)), hit_buffer(device, "hits", batch * sizeof(FileHit));
+    // What is counted is counted in every repetition, and of the last one it stays.
+    const bool counts = result.counted = !a.counters.empty();
+    Buffer cost_buffer;
+    const CostTotals totals(device);
+    if (counts) cost_buffer = Buffer(device, "costs", batch * sizeof(RayCosts));
+    const CountBuffers counting{cost_buffer, totals.buffer()};
     result.hits.resize(rays.size());
+    result.costs.resize(counts ? rays.size() : 0);
     std::vector<double> times(a.repeat, 0.0);
     Progress progress("tracing", double(rays.size()));
     for (size_t first = 0; first < rays.size(); first += batch) {
@@ -35,13 +46,23 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
         commands.upload(ray_buffer, std::span<const RayRecord>(&rays[first], count));
         const uint32_t warm_up = a.repeat > 1 ? 1 : 0;
         for (uint32_t i = 0; i < a.repeat + warm_up; i++) {
-            scene.record(commands, ray_buffer, uint32_t(count), hit_buffer, a.any_hit);
+            if (counts) {
+                commands.fill(cost_buffer, 0);
+                totals.record_clear(commands);
+            }
+            scene.record(commands, ray_buffer, uint32_t(count), hit_buffer, a.any_hit, counts ? &counting : nullptr);
+            if (counts) totals.record_readback(commands);
             commands.submit();
             for (const PassTime& time : commands.times())
                 if (i >= warm_up && time.name.starts_with("trace")) times[i - warm_up] += time.ms;
         }
         const auto part = commands.download<HitRecord>(hit_buffer, count);
         std::copy(part.begin(), part.end(), result.hits.begin() + ptrdiff_t(first));
+        if (counts) {
+            totals.add_to(result.sums);
+            const auto costs = commands.download<RayCosts>(cost_buffer, count);
+            std::copy(costs.begin(), costs.end(), result.costs.begin() + ptrdiff_t(first));
+        }
         progress.update(double(first + count));
     }
     std::nth_element(times.begin(), times.begin() + ptrdiff_t(times.size() / 2), times.end());
@@ -66,6 +87,8 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
     json["trace_ms"] = traced.trace_ms;
     json["mrays_per_second"] = nullptr;
     if (traced.trace_ms > 0) json["mrays_per_second"] = double(traced.hits.size()) / traced.trace_ms * 1e-3;
+    constexpr const char* kind = "rays";
+    if (traced.counted) json["counters"] = counter_stats(traced.sums, std::span(&kind, 1));
     if (scene.structures()) {
         json["khr"] = structure_stats(scene.structures()->stats(), StructureUpdate::keep);
         return json;
@@ -73,6 +96,7 @@ nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, con
     Commands commands(device);
     json["ldc"] = cube_stats(scene.cubes().stats(), scene.download_bodies(commands), scene.shown(),
                              {geometry.lower, geometry.upper}, choice);
+    json["memory"] = memory_stats(device.allocations(), device.peak_allocations());
     return json;
 }
 
@@ -84,7 +108,8 @@ void run_trace(const TraceArguments& a) {
         fail("--tracer {} traces no rays from files: use --tracer ldc or khr", a.tracing.tracer);
     check_repeat(a.repeat);
     std::vector<std::filesystem::path> outputs = {a.hits};
-    if (!a.stats.empty()) outputs.push_back(a.stats);
+    for (const auto& more : {a.stats, a.counters})
+        if (!more.empty()) outputs.push_back(more);
     check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
     const Scene scene = load_scene(a.scene);
@@ -98,7 +123,10 @@ void run_trace(const TraceArguments& a) {
     const CubeChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
     Device device({a.device.device, a.device.validate});
-    RayScene traced_scene(device, scene, assemble(scene, motion_of(scene, "")), choice, a.tracing.tracer == "khr");
+    RayScene traced_scene = [&] {
+        const MemoryPart part(device, "scene");
+        return RayScene(device, scene, assemble(scene, motion_of(scene, "")), choice, a.tracing.tracer == "khr");
+    }();
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();
     Commands commands(device);
@@ -107,6 +135,7 @@ void run_trace(const TraceArguments& a) {
         if (!note.empty()) print_note(note);
     }
     write_hits(a.hits, traced.hits);
+    if (!a.counters.empty()) write_costs(a.counters, traced.costs);
     if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced_scene, traced, a.any_hit));
 
     fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/error.h"
 #include "cli/paper_table.h"
 
 namespace peelray {
@@ -155,6 +156,10 @@ const std::vector<std::string>& effect_names() {
     return names;
 }
 
+std::string cost_aov(const RayCostField& field) {
+    return fmt::format("cost_{}", field.name);
+}
+
 const std::vector<std::string>& ray_setup_names() {
     static const std::vector<std::string> names = {"reflection", "box", "directions"};
     return names;
@@ -164,9 +169,16 @@ const std::vector<std::string>& all_aov_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all = aov_names();
         all.insert(all.end(), ray_setup_names().begin(), ray_setup_names().end());
+        for (const RayCostField& field : kRayCostFields) all.push_back(cost_aov(field));
         return all;
     }();
     return names;
+}
+
+const RayCostField* cost_field(const std::string& aov) {
+    for (const RayCostField& field : kRayCostFields)
+        if (aov == cost_aov(field)) return &field;
+    return nullptr;
 }
 
 bool wants_ray_setup(const std::vector<std::string>& aovs) {

@@ -62,7 +62,11 @@ const std::vector<std::string>& effect_names();
 const std::vector<std::string>& aov_names();
 /// The auxiliary pictures of what the paper sets up before it traces (Figure 7).
 const std::vector<std::string>& ray_setup_names();
+/// The auxiliary picture of what a pixel's rays cost: cost_steps, ...
+std::string cost_aov(const RayCostField& field);
 const std::vector<std::string>& all_aov_names();
+/// The field that this auxiliary picture shows; null: it is none of the costs.
+const RayCostField* cost_field(const std::string& aov);
 /// Is one of ray_setup_names() among these?
 bool wants_ray_setup(const std::vector<std::string>& aovs);
 

@@ -504,6 +504,7 @@ void Commands::flush() {
 void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {
     if (offset + data.size() > buffer.bytes()) fail("an upload to {} is too long (a programming error)", buffer.name());
     submit();
+    const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
         if (!staging_up_ || staging_up_.bytes() < bytes)
@@ -519,6 +520,7 @@ void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, u
     if (offset + data.size() > buffer.bytes())
         fail("a download of {} is too long (a programming error)", buffer.name());
     submit();
+    const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
         const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
         if (!staging_down_ || staging_down_.bytes() < bytes)
@@ -537,6 +539,14 @@ void grow(Device& device, Commands& commands, Buffer& buffer, const std::string&
     commands.copy(buffer, larger, kept);
     commands.submit();
     buffer = std::move(larger);
+}
+
+void shrink(Device& device, Commands& commands, Buffer& buffer, uint64_t bytes) {
+    if (!buffer || bytes == 0 || buffer.bytes() <= std::max<uint64_t>(bytes, 16)) return;
+    Buffer smaller(device, buffer.name(), bytes);
+    commands.copy(buffer, smaller, bytes);
+    commands.submit();
+    buffer = std::move(smaller);
 }
 
 }  // namespace peelray

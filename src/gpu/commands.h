@@ -242,6 +242,9 @@ class Commands {
     Buffer staging_up_, staging_down_;
 };
 
+/// Makes `buffer`, if it holds more, hold just `bytes`, which stay. Submits then.
+void shrink(Device& device, Commands& commands, Buffer& buffer, uint64_t bytes);
+
 /// Makes `buffer` hold at least `bytes`; its first `kept` bytes stay. Submits if there is something to keep.
 void grow(Device& device, Commands& commands, Buffer& buffer, const std::string& name, uint64_t bytes, uint64_t kept);
 

@@ -233,13 +233,26 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPrope
     check_vulkan(vk.vkAllocateMemory(handle, &info, nullptr, &memory),
                  fmt::format("allocating {:.0f} MiB for {}", double(needs.size) / (1 << 20), what));
     allocated_ += needs.size;
-    peak_allocated_ = std::max(peak_allocated_, allocated_);
+    held_.push_back({memory, {part_, std::string(what), needs.size}});
+    if (allocated_ > peak_allocated_) reset_peak();
     return memory;
 }
 
 void Device::release(VkDeviceMemory memory, uint64_t size) {
     vk.vkFreeMemory(handle, memory, nullptr);
     allocated_ -= size;
+    std::erase_if(held_, [&](const auto& entry) { return entry.first == memory; });
+}
+
+std::vector<Allocation> Device::allocations() const {
+    std::vector<Allocation> list;
+    for (const auto& [memory, allocation] : held_) list.push_back(allocation);
+    return list;
+}
+
+void Device::reset_peak() {
+    peak_allocated_ = allocated_;
+    at_peak_ = allocations();
 }
 
 }  // namespace peelray

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace peelray {
@@ -63,6 +64,12 @@ struct RayTracingLimits {
     uint64_t most_rays = 0;  ///< of a launch
 };
 
+/// A piece of device memory: the part of the program that it belongs to and what it holds.
+struct Allocation {
+    std::string part, name;
+    uint64_t bytes;
+};
+
 /// A logical device with one queue that does graphics, compute and transfer.
 class Device {
   public:
@@ -99,8 +106,11 @@ class Device {
     /// Device memory held by buffers and images now, and the most so far, in bytes.
     uint64_t allocated() const { return allocated_; }
     uint64_t peak_allocated() const { return peak_allocated_; }
+    /// Each piece of it, in the order in which they were made: what is held now, and what was at the peak.
+    std::vector<Allocation> allocations() const;
+    const std::vector<Allocation>& peak_allocations() const { return at_peak_; }
     /// Counts the peak anew from what is allocated now.
-    void reset_peak() { peak_allocated_ = allocated_; }
+    void reset_peak();
 
     // For the classes of this folder.
     VkDevice handle = VK_NULL_HANDLE;
@@ -119,6 +129,7 @@ class Device {
     void release(VkDeviceMemory memory, uint64_t size);
 
   private:
+    friend class MemoryPart;
     struct State;
     void create_logical(bool validate);
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
@@ -135,7 +146,23 @@ class Device {
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     std::vector<std::string> validation_messages_;
     uint64_t allocated_ = 0, peak_allocated_ = 0;
+    std::vector<std::pair<VkDeviceMemory, Allocation>> held_;
+    std::vector<Allocation> at_peak_;
+    const char* part_ = "other";
     std::unique_ptr<State> state_;
+};
+
+/// While it lives, memory is accounted for as this part of the program. Of several the innermost counts.
+class MemoryPart {
+  public:
+    MemoryPart(Device& device, const char* part) : device_(device), outer_(std::exchange(device.part_, part)) {}
+    ~MemoryPart() { device_.part_ = outer_; }
+    MemoryPart(const MemoryPart&) = delete;
+    MemoryPart& operator=(const MemoryPart&) = delete;
+
+  private:
+    Device& device_;
+    const char* outer_;
 };
 
 /// Throws Error naming `what` unless `result` is VK_SUCCESS.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -199,11 +200,10 @@ std::vector<RayRecord> read_rays(const std::filesystem::path& path) {
     return rays;
 }
 
-void write_hits(const std::filesystem::path& path, const std::vector<HitRecord>& hits) {
-    std::string dictionary = fmt::format(
-        "{{'descr': [('t', '<f4'), ('triangle', '<u4'), ('u', '<f4'), ('v', '<f4')], 'fortran_order': False, 'shape': "
-        "({},), }}",
-        hits.size());
+/// `descr`: the Python text of the dtype; `data`: `count` records of it.
+static void write_records(const std::filesystem::path& path, std::string_view descr, size_t count,
+                          std::span<const std::byte> data) {
+    std::string dictionary = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({},), }}", descr, count);
     // Padded so that the data starts at a multiple of 64 bytes: it can be mapped into memory.
     constexpr size_t prefix = 10;
     dictionary.append(63 - (prefix + dictionary.size()) % 64, ' ');
@@ -211,8 +211,20 @@ void write_hits(const std::filesystem::path& path, const std::vector<HitRecord>&
     std::string bytes(magic);
     bytes += {'\x01', '\x00', char(dictionary.size() & 0xff), char(dictionary.size() >> 8)};
     bytes += dictionary;
-    bytes.append(reinterpret_cast<const char*>(hits.data()), hits.size() * sizeof(HitRecord));
+    bytes.append(reinterpret_cast<const char*>(data.data()), data.size());
     store_file(path, bytes);
+}
+
+void write_hits(const std::filesystem::path& path, const std::vector<HitRecord>& hits) {
+    write_records(path, "[('t', '<f4'), ('triangle', '<u4'), ('u', '<f4'), ('v', '<f4')]", hits.size(),
+                  std::as_bytes(std::span(hits)));
+}
+
+void write_costs(const std::filesystem::path& path, const std::vector<RayCosts>& costs) {
+    std::string descr;
+    for (const RayCostField& field : kRayCostFields)
+        descr += fmt::format("{}('{}', '<u4')", descr.empty() ? "[" : ", ", field.name);
+    write_records(path, descr + "]", costs.size(), std::as_bytes(std::span(costs)));
 }
 
 }  // namespace peelray

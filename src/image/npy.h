@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/ray_costs.h"
+
 namespace peelray {
 
 /// One ray of RAYS.npy: world units; t counts in lengths of d, which need not be 1.
@@ -29,5 +31,8 @@ std::vector<RayRecord> read_rays(const std::filesystem::path& path);
 /// Writes a structured array of shape (n,): [('t','<f4'),('triangle','<u4'),('u','<f4'),('v','<f4')]. Atomic. Throws
 /// Error.
 void write_hits(const std::filesystem::path& path, const std::vector<HitRecord>& hits);
+
+/// The same with [('steps','<u4'),('cells','<u4'),('pixels','<u4'),('samples','<u4'),('triangles','<u4')].
+void write_costs(const std::filesystem::path& path, const std::vector<RayCosts>& costs);
 
 }  // namespace peelray

@@ -34,7 +34,11 @@ std::unique_ptr<BuildStage> make_order(const CubeLayout& layout) {
     return std::make_unique<VoxelOrder>();
 }
 
+/// The part of the program that scratch memory is accounted for as.
+constexpr const char* kScratch = "build scratch";
+
 std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) {
+    const MemoryPart part(device, kScratch);
     if (cubes.layout().streams) return std::make_unique<StreamRasterizer>(device, cubes);
     uint32_t largest = 16;
     for (const CubeBody& body : cubes.bodies()) largest = std::max(largest, round_resolution(body.resolution));
@@ -70,6 +74,7 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
     p.first_sample = uint32_t(before.samples);
     p.sampling = uint32_t(cubes.sampling());
     p.by_pixel = cubes.layout().by_pixel() ? (cubes.layout().half_depth ? 2 : 1) : 0;
+    const MemoryPart part(device, kScratch);
     state_->counters = Buffer(device, "build counters", sizeof(LdcCounters));
     state_->groups = Buffer(device, "build workgroups", LDC_GROUPS * 12);
     counters_readback_ = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
@@ -86,6 +91,7 @@ void CubeBuilder::set_streams(std::vector<DrawnStream> streams) {
 }
 
 void CubeBuilder::allocate(Commands& commands) {
+    const MemoryPart part(state_->device, kScratch);
     ensure_size(state_->device, state_->fragments, "fragments",
                 uint64_t(state_->params.fragment_capacity) * sizeof(LdcFragment));
     rasterizer_->allocate(commands, *state_);

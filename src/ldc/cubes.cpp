@@ -74,6 +74,7 @@ TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vert
     // Two bits of a sample's id hold its axis.
     if (indices.size() >= 1u << 30)
         fail("the scene has {} triangles, but cubes hold fewer than 2^30: split the scene", indices.size());
+    const MemoryPart part(device, "triangles");
     positions = Buffer(device, "vertex positions", vertices.size_bytes());
     triangles = Buffer(device, "triangle indices", indices.size_bytes());
     Commands commands(device);
@@ -101,6 +102,7 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
     : device_(device), bodies_(std::move(bodies)), sampling_(sampling), layout_(layout) {
     assert(!bodies_.empty());
     check_block(layout.block);
+    const MemoryPart part(device, "cubes");
     Commands commands(device);
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
@@ -126,6 +128,7 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
         fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
              size.nodes, size.samples);
+    const MemoryPart part(device_, "cubes");
     grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
     grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
     const uint64_t attributes = layout_.streams ? 8 : 0;
@@ -139,6 +142,20 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
     grow(device_, commands, top_table, "the cubes' top table", size.cells * 8, kept.cells * 8);
     grow(device_, commands, node_table, "the cubes' nodes", size.occupied * 256, kept.occupied * 256);
     grow(device_, commands, voxel_table, "the cubes' voxels", size.nodes * 256, kept.nodes * 256);
+}
+
+void Cubes::trim(const TableSize& size) {
+    const MemoryPart part(device_, "cubes");
+    Commands commands(device_);  // of its own: the builder's hold the times of the build
+    const auto to = [&](Buffer& buffer, uint64_t bytes) { shrink(device_, commands, buffer, bytes); };
+    to(samples, size.samples * 8);
+    to(sample_ids, size.samples * 4);
+    to(sample_attributes, size.samples * 8);
+    to(pixel_offsets, size.cells * 4);
+    to(pixel_ranges, size.cells * 4);
+    to(top_table, size.cells * 8);
+    to(node_table, size.occupied * 256);
+    to(voxel_table, size.nodes * 256);
 }
 
 uint32_t Cubes::pyramid_levels() const {

@@ -131,6 +131,9 @@ class Cubes {
     /// Makes room for `size` in all; what the first `kept` entries of each table hold stays.
     void reserve(Commands& commands, const TableSize& size, const TableSize& kept);
 
+    /// Gives back what the tables have room for beyond `size`, which is what they hold.
+    void trim(const TableSize& size);
+
     /// LdcBody of every body as the last build left them.
     std::vector<LdcBody> download_bodies(Commands& commands) const;
 

@@ -51,9 +51,12 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     const HitTest test = options.test;
     assert(scene.cubes.sampling() == sampling_for(test));
     const CubeLayout& layout = scene.cubes.layout();
-    std::vector<uint32_t> constants = {options.any_hit, uint32_t(test),
+    std::vector<uint32_t> constants = {options.any_hit,
+                                       uint32_t(test),
                                        options.edges == Edges::precise && test == HitTest::exact,
-                                       uint32_t(layout.traversal), scene.triangles.masks && test == HitTest::exact};
+                                       uint32_t(layout.traversal),
+                                       scene.triangles.masks && test == HitTest::exact,
+                                       queue.counting != nullptr};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
     if (!four)
         for (const uint32_t c : {shader_constant(layout.batch), instance_constant(scene.instances),
@@ -69,10 +72,13 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     p.tolerance = options.tolerance;
     p.block = scene.cubes.layout().block;
     std::vector<Binding> bindings;
-    for (const Binding& binding : cube_bindings(scene, {{"rays", queue.rays},
-                                                        {"skip", queue.skip ? *queue.skip : queue.rays},
-                                                        {"queue", queue.counters ? *queue.counters : queue.rays},
-                                                        {"hits", hits}}))
+    for (const Binding& binding :
+         cube_bindings(scene, {{"rays", queue.rays},
+                               {"skip", queue.skip ? *queue.skip : queue.rays},
+                               {"queue", queue.counters ? *queue.counters : queue.rays},
+                               {"hits", hits},
+                               {"costs", queue.counting ? queue.counting->costs : hits},
+                               {"count_totals", queue.counting ? queue.counting->totals : hits}}))
         // Four rays take the instances in turn, without the hierarchy, and only by pixel.
         if (!four || (binding.name != "top_table" && binding.name != "instance_boxes")) bindings.push_back(binding);
     bindings = with_alpha_test(bindings, scene.triangles);

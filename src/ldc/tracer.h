@@ -24,6 +24,12 @@ struct TracedScene {
     const TriangleBuffers& triangles;
 };
 
+/// Where it is counted what rays cost (shaders/counting.glsl); both are added to.
+struct CountBuffers {
+    const Buffer& costs;   ///< PeelrayCounts of each entry of a queue
+    const Buffer& totals;  ///< CountTotals of each kind of ray
+};
+
 /// A queue of rays on the device.
 struct RayQueue {
     const Buffer& rays;            ///< Ray each
@@ -36,6 +42,7 @@ struct RayQueue {
         nullptr;  ///< null: dispatched for `count`; else workgroups of 64 rays are read at groups_offset
     uint64_t groups_offset = 0;
     uint64_t launch_offset = 0;  ///< of `groups`: the rays themselves (count, 1, 1), for the device's own ray tracing
+    const CountBuffers* counting = nullptr;  ///< null: nothing is counted, and counting costs nothing
 };
 
 /// How `exact` hits within rounding of a triangle's edge are decided: both are watertight.

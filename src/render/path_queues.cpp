@@ -19,6 +19,7 @@ uint32_t with_room_to_grow(uint32_t count) {
 PathQueues::PathQueues(Device& device)
     : device_(device),
       most_lights_(uint32_t(std::min(kMostLights, device.limits().maxStorageBufferRange / sizeof(Ray)))) {
+    const MemoryPart part(device, "frame");
     counters_ = Buffer(device, "queue counters", QUEUE_WORDS * 4);
     readback_ = Buffer(device, "queue counters readback", QUEUE_COUNTERS * 4, Buffer::Where::readback);
 }

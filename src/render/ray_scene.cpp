@@ -56,12 +56,15 @@ void RayScene::build_cubes(Commands& commands) {
     build_ms_ += commands.elapsed_ms();
 }
 
-void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
+void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
+                      const CountBuffers* counting) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
     if (structures_)
         record_khr_trace(commands, device_, *structures_, triangles_, {rays, nullptr, count}, hits_, any_hit);
-    else
-        record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
+    RayQueue queue{rays, nullptr, count};
+    queue.counting = counting;
+    if (!structures_)
+        record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, queue, hits_,
                      {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
     record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
 }

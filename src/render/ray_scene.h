@@ -3,6 +3,7 @@
 #pragma once
 
 #include "khr/structures.h"
+#include "ldc/tracer.h"
 #include "render/scene_cubes.h"
 
 namespace peelray {
@@ -16,7 +17,9 @@ class RayScene {
     RayScene& operator=(const RayScene&) = delete;
 
     /// Records the tracing of `count` rays (Ray each): file_hits[i] (FileHit each) for rays[i], see record_trace.
-    void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
+    /// `counting`: where it is counted what they cost, if that is not null.
+    void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
+                const CountBuffers* counting = nullptr);
 
     const SceneCubes& cubes() const { return cubes_; }
     /// Null: rays are traced in the cubes.

@@ -70,6 +70,7 @@ struct Renderer::Impl {
     Commands commands;
     ViewTarget view;
     ComputeView compute_view;
+    std::unique_ptr<CostCounter> counter;  ///< where it is to be counted
     Buffer picture, encoded, aov_buffer;
 
     RenderSettings settings;
@@ -125,6 +126,7 @@ struct Renderer::Impl {
     void record_shadows_khr();
     RayQueue queue_of(uint32_t level);
     void record_trace_of(uint32_t level);
+    void record_cube_trace(uint32_t level, const Buffer& hits);
     void record_band(uint32_t sample, uint32_t first_row);
     bool finish_band(uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
@@ -160,6 +162,7 @@ void Renderer::Impl::prepare_images() {
                     (settings.visibility == Visibility::automatic && ComputeView::preferable(device, scene));
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     view.resize(device, settings.width, settings.height);
+    const MemoryPart part(device, "images");
     ensure_size(device, picture, "picture", pixels * 16);
     ensure_size(device, encoded, "encoded picture", pixels * 4);
 }
@@ -179,6 +182,7 @@ void Renderer::Impl::prepare_cubes() {
 }
 
 void Renderer::Impl::prepare_maps() {
+    const MemoryPart part(device, "cube maps");
     if (!maps) {
         maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment));
     } else if (maps_moved) {
@@ -358,8 +362,14 @@ void Renderer::Impl::record_trace_of(uint32_t level) {
     if (settings.tracer == Tracer::khr)
         record_khr_trace(commands, device, *structures, scene.triangles, queue_of(level), hits, false);
     else
-        record_trace(commands, device, traced(), queue_of(level), hits,
-                     {hit, settings.tolerance, false, Edges::single});
+        record_cube_trace(level, hits);
+}
+
+void Renderer::Impl::record_cube_trace(uint32_t level, const Buffer& hits) {
+    RayQueue queue = queue_of(level);
+    const CountBuffers counting = counter ? counter->level(level) : CountBuffers{hits, hits};
+    if (counter) queue.counting = &counting;
+    record_trace(commands, device, traced(), queue, hits, {hit, settings.tolerance, false, Edges::single});
 }
 
 /// The same as record_shadows() for the device's own ray tracing.
@@ -392,10 +402,13 @@ void Renderer::Impl::record_shadows() {
     p.count = queue.capacity;
     p.tolerance = frame.tolerance;
     p.block = settings.layout.block;
+    const CountBuffers counting = counter ? counter->lights() : CountBuffers{queue.light, queue.light};
     std::vector<Binding> bindings = cube_bindings(traced(), {{"shadow_rays", queue.rays},
                                                              {"shadow_skip", queue.skip},
                                                              {"shadow_light", queue.light},
-                                                             {"queue", queues.counters()}});
+                                                             {"queue", queues.counters()},
+                                                             {"costs", counting.costs},
+                                                             {"count_totals", counting.totals}});
     if (scene.has_glass) {
         for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
         bindings.push_back({"normals", scene.normals});
@@ -405,7 +418,8 @@ void Renderer::Impl::record_shadows() {
     const Pass& pass =
         device.pass(scene.has_glass ? "trace_shadow_glass" : "trace_shadow",
                     {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
-                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances), device.immediate});
+                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances), device.immediate,
+                     counter != nullptr});
     std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
     commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }
@@ -432,6 +446,7 @@ void Renderer::Impl::record_levels(uint32_t sample, uint32_t first_row) {
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     commands.fill(queues.counters(), 0);
+    if (counter) counter->record_band(commands, queues, last_level + 1);
     if (first_row == 0) record_visibility(sample);
     const LevelParams p = level_params(0, sample, first_row);
     if (settings.tracer == Tracer::cubemap) {
@@ -453,6 +468,11 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
                  AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, first_row, sample, last,
                                   std::exp2(settings.exposure) / float(settings.spp), uint32_t(settings.tonemap)},
                  groups_for(p.capacity, 64));
+    if (counter) {
+        std::vector<LevelParams> params;
+        for (uint32_t i = 0; i <= last_level; i++) params.push_back(level_params(i, sample, first_row));
+        counter->record_sums(commands, queues, view.frame, params);
+    }
     commands.copy(queues.counters(), queues.readback(), QUEUE_COUNTERS * 4);
 }
 
@@ -484,6 +504,7 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
             count_times();
             if (progress) progress(0);  // where an interrupt ends the work
         });
+    if (counter) counter->record_begin(commands, uint64_t(settings.width) * settings.height);
     for (uint32_t sample = 0; sample < settings.spp; sample++)
         for (uint32_t row = 0; row < settings.height; row += band_rows) {
             for (;; redone++) {
@@ -494,6 +515,7 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
                 if (progress) progress((sample + double(row) / settings.height) / settings.spp);
             }
             count_times();  // of the turn that fitted: its rays are counted, too
+            if (counter) counter->finish();
             rays.reflection += queues.count(QUEUE_REFLECTION);
             rays.refraction += queues.count(QUEUE_REFRACTION);
             rays.shadow += queues.count(QUEUE_LIGHT) - queues.count(QUEUE_AMBIENT);
@@ -510,6 +532,7 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
             "auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a "
             "smaller --size",
             settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
+    const MemoryPart part(device, "images");
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
     commands.fill(queues.counters(), 0);
     record_visibility(0);  // it found room before
@@ -538,6 +561,7 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
 
 /// The paper's Figure 7, in render targets.
 void Renderer::Impl::render_ray_setup(Aovs& aovs) {
+    const MemoryPart part(device, "images");
     const uint32_t pixels = settings.width * settings.height;
     RasterSetup setup;
     setup.colors.assign(4, VK_FORMAT_R32G32B32A32_SFLOAT);
@@ -574,12 +598,18 @@ void Renderer::Impl::render_ray_setup(Aovs& aovs) {
     }
 }
 
-Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment)
-    : impl_(std::make_unique<Impl>(device, scene, assembly, environment)) {}
+/// The part of the program that what is uploaded is accounted for as.
+static constexpr const char* kScenePart = "scene";
+
+Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment) {
+    const MemoryPart part(device, kScenePart);
+    impl_ = std::make_unique<Impl>(device, scene, assembly, environment);
+}
 
 Renderer::~Renderer() = default;
 
 void Renderer::pose(const Scene& scene) {
+    const MemoryPart part(impl_->device, kScenePart);
     impl_->moment = &scene;
     impl_->moved = impl_->scene.pose(impl_->commands, scene);
     impl_->maps_moved = true;
@@ -605,6 +635,8 @@ void Renderer::Impl::describe(RenderStats& stats) {
         stats.update = settings.structures;
     }
     if (settings.tracer != Tracer::ldc) return;
+    stats.counted = counter != nullptr;
+    if (counter) stats.costs = counter->sums();
     stats.rebuilt = rebuilt;
     stats.cubes = cubes->stats();
     stats.bodies = cubes->cubes().download_bodies(commands);
@@ -614,10 +646,13 @@ void Renderer::Impl::describe(RenderStats& stats) {
 
 RenderResult Renderer::render(const RenderSettings& settings, const std::function<void(double)>& progress) {
     Impl& r = *impl_;
+    const MemoryPart part(r.device, "frame");
     r.settings = settings;
     r.check_settings();
     r.commands.time_passes(settings.time_passes);
     r.redone = 0;
+    const bool counts = settings.counters && settings.tracer == Tracer::ldc;
+    if (counts != (r.counter != nullptr)) r.counter = counts ? std::make_unique<CostCounter>(r.device) : nullptr;
     r.prepare_images();
     r.prepare_cubes();
     r.prepare_structures();
@@ -660,7 +695,10 @@ RenderResult Renderer::render(const RenderSettings& settings, const std::functio
     result.encoded = r.commands.download<uint32_t>(r.encoded, pixels);
     if (settings.aovs) r.render_aovs(result.aovs);
     if (settings.aovs && settings.ray_setup) r.render_ray_setup(result.aovs);
+    if (r.counter) result.aovs.costs = r.counter->download_pixels(r.commands, pixels);
     stats.peak_bytes = r.device.peak_allocated();
+    stats.memory = r.device.allocations();
+    stats.peak_memory = r.device.peak_allocations();
     return result;
 }
 

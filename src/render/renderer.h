@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "khr/structures.h"
+#include "render/cost_counter.h"
 #include "render/cube_maps.h"
 #include "render/scene_cubes.h"
 #include "scene/picture.h"
@@ -44,6 +45,7 @@ struct RenderSettings : PictureSettings {
     StructureUpdate structures = StructureUpdate::rebuild;
     uint32_t repeat = 1;      ///< frames to render; times are medians over them
     bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
+    bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
 };
 
 struct RenderStats {
@@ -68,12 +70,15 @@ struct RenderStats {
     uint32_t rebuilt = 0;         ///< cubes that were built for this frame
     uint32_t moved = 0;           ///< instances that stand elsewhere than in the frame before
     uint64_t scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
+    std::vector<Allocation> memory, peak_memory;  ///< all of the device's when the picture was done, and at the peak
     HitTest hit = HitTest::exact;
     CubeChoice choice;  ///< of the cubes
     CubeMaps::Stats maps;
     Structures::Stats structures;                       ///< of `khr`
     StructureUpdate update = StructureUpdate::rebuild;  ///< of those of them that are not kept
-    uint32_t redone = 0;                                ///< how often something did not fit and was done again
+    bool counted = false;  ///< with RenderSettings::counters
+    AllKindCosts costs;    ///< of the last frame
+    uint32_t redone = 0;   ///< how often something did not fit and was done again
 };
 
 struct RenderResult : Picture {

@@ -102,6 +102,8 @@ bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangle
         fixed_size_ = builder.size();
         fixed_redone_ = builder.redone();
     }
+    // The builder guessed; what does not deform never needs more.
+    if (fixed_ > 0) cubes_.trim(fixed_size_);
     const auto all = uint32_t(cubes_.bodies().size());
     if (fixed_ < all)
         builder_ = std::make_unique<CubeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_);

@@ -6,6 +6,7 @@ void ViewTarget::resize(Device& device, uint32_t width, uint32_t height) {
     if (color.width() == width && color.height() == height && visibility) return;
     color.reset();
     depth.reset();
+    const MemoryPart part(device, "images");
     color = Image2D(device, "visibility", width, height, VK_FORMAT_R32G32_UINT,
                     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     depth = Image2D(device, "depth", width, height, VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/ray_costs.h"
 #include "scene/bounds.h"
 
 namespace peelray {
@@ -37,6 +38,8 @@ struct Aovs {
     /// What the paper sets up for every mirror ray (Figure 7): its direction, where it leaves the scene's box, its
     /// direction in the x-LDI (y, z) and y-LDI (z, x), in the z-LDI (x, y).
     std::vector<glm::vec4> reflection, box, directions_xy, directions_z;
+    /// Where it was counted: what all rays of a pixel cost, of all samples.
+    std::vector<RayCosts> costs;
 };
 
 struct RayCounts {

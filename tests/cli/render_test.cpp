@@ -120,6 +120,50 @@ TEST_F(RenderCommand, Stats) {
     for (const char* key : {"reflection", "shadow"}) EXPECT_GT(stats["rays"][key], 0) << key;
 }
 
+TEST_F(RenderCommand, Counters) {
+    const Outcome run = render("builtin:teapots", {"--stats", out("s.json"), "--ldc", "64", "--hit", "exact", "--aov",
+                                                   "cost_steps", "--counters"});
+    expect_done(run, {"a.cost_steps.exr", "a.cost_steps.png", "a.png", "s.json"});
+    const auto stats = nlohmann::json::parse(get(out("s.json")));
+    const auto& counters = stats["counters"];
+    EXPECT_TRUE(counters["times"].is_string());
+    EXPECT_EQ(counters["shadow"]["rays"], stats["rays"]["shadow"]);
+    for (const char* kind : {"reflection_and_refraction", "shadow"})
+        for (const char* field : {"steps", "cells", "samples", "triangles"}) {
+            EXPECT_GT(counters[kind]["mean"][field], 0) << kind << " " << field;
+            EXPECT_GE(counters[kind]["largest"][field], counters[kind]["mean"][field]) << kind << " " << field;
+        }
+    float most = 0;
+    for (const glm::vec4& pixel : read_hdr(out("a.cost_steps.exr")).pixels) most = std::max(most, pixel.x);
+    EXPECT_EQ(counters["largest_of_a_pixel"]["steps"], most);
+    EXPECT_NE(run.err.find(fmt::format("to {}, light yellow", most)), std::string::npos) << run.err;
+}
+
+TEST_F(RenderCommand, CountersNeedCubesAndStats) {
+    expect_refused(render(in("cube.obj"), {"--counters"}), 1, "--stats");
+    for (const std::string tracer : {"none", "cubemap", "reference"})
+        expect_refused(render(in("cube.obj"), {"--aov", "cost_cells", "--tracer", tracer}), 1, "--tracer ldc");
+}
+
+TEST_F(RenderCommand, MemoryByPartAndBuffer) {
+    expect_done(render(in("cube.obj"), {"--stats", out("s.json")}), {"a.png", "s.json"});
+    const auto stats = nlohmann::json::parse(get(out("s.json")));
+    for (const auto& memory : {stats["memory"], stats["memory"]["peak"]}) {
+        uint64_t all = 0;
+        for (const auto& part : memory["parts"]) {
+            uint64_t sum = 0;
+            for (const auto& bytes : part["buffers"]) sum += bytes.get<uint64_t>();
+            EXPECT_EQ(part["bytes"], sum);
+            all += sum;
+        }
+        EXPECT_EQ(memory["bytes"], all);
+    }
+    EXPECT_EQ(stats["memory"]["peak"]["bytes"], stats["memory_bytes"]["peak"]);
+    EXPECT_GE(stats["memory"]["peak"]["bytes"], stats["memory"]["bytes"]);
+    for (const char* part : {"triangles", "cubes", "scene", "frame", "images"})
+        EXPECT_TRUE(stats["memory"]["parts"].contains(part)) << part;
+}
+
 TEST_F(RenderCommand, StatsWithoutSecondaryRays) {
     expect_done(render(in("cube.obj"), {"--stats", out("s.json"), "--tracer", "none"}), {"a.png", "s.json"});
     const auto stats = nlohmann::json::parse(get(out("s.json")));

@@ -96,6 +96,47 @@ TEST_F(TraceCommand, KnownHitsAtEveryResolutionAndUnderValidation) {
         expect_known(trace(known_rays(), {"--ldc", n, "--validate", "--builder", "compute", "--tracer", "ldc"}));
 }
 
+TEST_F(TraceCommand, CountersOfEveryRay) {
+    put("rays.npy", rays_npy(known_rays()));
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{}, {"--traversal", "two-level"}, {"--traversal", "mipmap", "--batch", "rays"}}) {
+        SCOPED_TRACE(more.empty() ? "voxel" : more[1]);
+        std::vector<std::string> arguments = {"trace",   in("cube.obj"),  "--rays",     in("rays.npy"),
+                                              "--out",   out("hits.npy"), "--counters", out("c.npy"),
+                                              "--stats", out("s.json")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(run(arguments), {"c.npy", "hits.npy", "s.json"});
+        const std::string file = get(out("c.npy"));
+        const size_t body = file.find('\n') + 1;
+        EXPECT_NE(file.find("[('steps', '<u4'), ('cells', '<u4'), ('pixels', '<u4'), ('samples', '<u4'), "
+                            "('triangles', '<u4')]"),
+                  std::string::npos);
+        ASSERT_EQ(file.size() - body, kKnown.size() * sizeof(RayCosts));
+        std::vector<RayCosts> costs(kKnown.size());
+        std::memcpy(costs.data(), file.data() + body, file.size() - body);
+        double steps = 0;
+        for (size_t i = 0; i < costs.size(); i++) {
+            SCOPED_TRACE(i);
+            steps += costs[i].steps;
+            // What hits has met a cell, a sample and a triangle; what never enters the cube has cost nothing.
+            if (kKnown[i].hit.triangle != kMiss) {
+                EXPECT_GT(costs[i].cells, 0u);
+                EXPECT_GT(costs[i].samples, 0u);
+                EXPECT_GT(costs[i].triangles, 0u);
+            }
+            if (more.empty())
+                EXPECT_EQ(costs[i].pixels, 0u);
+            else
+                EXPECT_LE(costs[i].cells, costs[i].pixels);
+        }
+        EXPECT_EQ(costs[8].steps, 0u);  // past it
+        const auto stats = nlohmann::json::parse(get(out("s.json")));
+        EXPECT_EQ(stats["counters"]["rays"]["rays"], kKnown.size());
+        EXPECT_NEAR(stats["counters"]["rays"]["mean"]["steps"].get<double>(), steps / double(kKnown.size()), 1e-6);
+        EXPECT_TRUE(stats["memory"]["parts"].contains("cubes"));
+    }
+}
+
 TEST_F(TraceCommand, AnyHitAgreesOnWhatIsHit) {
     const auto hits = trace(known_rays(), {"--any-hit"});
     for (size_t i = 0; i < hits.size(); i++) {

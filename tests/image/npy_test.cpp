@@ -150,5 +150,16 @@ TEST_F(Npy, WritesNoHits) {
     EXPECT_EQ(bytes.size() % 64, 0u);
 }
 
+TEST_F(Npy, WritesCosts) {
+    const std::vector<RayCosts> costs = {{1, 2, 3, 4, 5}, {0, 0, 0, 0, 4294967295u}};
+    write_costs(folder / "c.npy", costs);
+    const std::string bytes = get(folder / "c.npy");
+    ASSERT_GT(bytes.size(), 40u);
+    EXPECT_TRUE(bytes.substr(10).starts_with(
+        "{'descr': [('steps', '<u4'), ('cells', '<u4'), ('pixels', '<u4'), ('samples', '<u4'), ('triangles', '<u4')], "
+        "'fortran_order': False, 'shape': (2,), }"));
+    EXPECT_EQ(std::memcmp(bytes.data() + bytes.size() - 40, costs.data(), 40), 0);
+}
+
 }  // namespace
 }  // namespace peelray
