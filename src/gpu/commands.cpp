@@ -338,9 +338,9 @@ void Commands::end_group() {
 }
 
 void Commands::begin_timer(const std::string& name) {
-    if (device_.timestamp_period() == 0) return;
+    if (device_.timestamp_period() == 0 || (as_one_ && !timed_.empty())) return;
     const size_t index = timed_.size();
-    timed_.push_back(group_.empty() ? name : group_ + "/" + name);
+    timed_.push_back(as_one_ ? "all" : group_.empty() ? name : group_ + "/" + name);
     if (device_.immediate) return;
     if (index / kTimersPerPool == query_pools_.size()) {
         VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
@@ -357,7 +357,11 @@ void Commands::begin_timer(const std::string& name) {
 }
 
 void Commands::end_timer() {
-    if (device_.timestamp_period() == 0) return;
+    if (!as_one_) end_timer_of_all();
+}
+
+void Commands::end_timer_of_all() {
+    if (timed_.empty()) return;
     if (device_.immediate) {
         const std::string name = timed_.back();
         const auto start = std::chrono::steady_clock::now();
@@ -387,6 +391,7 @@ void Commands::read_times() {
 }
 
 void Commands::submit() {
+    if (as_one_ && recording_) end_timer_of_all();
     if (device_.immediate) {
         flush();
         times_ = std::exchange(host_times_, {});

@@ -127,6 +127,10 @@ class Commands {
     /// GPU times of the last submission in order of recording; empty where the device has no timestamps.
     const std::vector<PassTime>& times() const { return times_; }
 
+    /// From the next submission on no pass is timed by itself, so that nothing stands between them: times() has one
+    /// entry, "all". For measuring.
+    void time_as_one() { as_one_ = true; }
+
     /// From the first pass's start to the last one's end of the last submission, in GPU milliseconds; 0 without
     /// timestamps.
     double elapsed_ms() const { return elapsed_ms_; }
@@ -169,6 +173,7 @@ class Commands {
     void begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer);
     void begin_timer(const std::string& name);
     void end_timer();
+    void end_timer_of_all();
     void label(const std::string& name);
     void end_label();
     void flush();
@@ -181,7 +186,7 @@ class Commands {
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkFence fence_ = VK_NULL_HANDLE;
-    bool recording_ = false;
+    bool recording_ = false, as_one_ = false;
     std::vector<VkDescriptorPool> set_pools_;
     size_t set_pool_ = 0;
     std::vector<VkQueryPool> query_pools_;

@@ -25,10 +25,9 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
     for (bool built = false; !built;) {
         const bool fixed = cubes_.build_fixed(commands, triangles_);
         if (fixed) build_times_ = commands.times(), build_ms_ = commands.elapsed_ms();
-        cubes_.record(commands, triangles_);
-        instances_.record(commands, cubes_.cubes());
+        record_build(commands);
         commands.submit();
-        built = cubes_.finish(commands);
+        built = finish_build(commands);
     }
     build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());
     build_ms_ += commands.elapsed_ms();
@@ -36,9 +35,22 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
 
 void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
-    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, {rays, nullptr, count}, hits_,
-                 {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
-    record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
+    record_hits(commands, {rays, nullptr, count}, hits_, any_hit, Edges::precise);
+    record_translation(commands, hits_, count, file_hits);
+}
+
+void RayScene::record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit, Edges edges) {
+    record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, queue, hits,
+                 {cubes_.choice().hit, cubes_.choice().tolerance, any_hit, edges});
+}
+
+void RayScene::record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits) {
+    record_file_hits(commands, device_, instances_, triangle_ids_, hits, count, file_hits);
+}
+
+void RayScene::record_build(Commands& commands) {
+    cubes_.record(commands, triangles_);
+    instances_.record(commands, cubes_.cubes());
 }
 
 }  // namespace peelray

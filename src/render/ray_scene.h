@@ -15,7 +15,17 @@ class RayScene {
     /// Records the tracing of `count` rays (Ray each): file_hits[i] (FileHit each) for rays[i], see record_trace.
     void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit);
 
+    /// The same in two parts: hits[i] (Hit each) for the rays of a queue, and their translation.
+    void record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit, Edges edges);
+    void record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits);
+
+    /// Records the build of what is built for every frame, and where it stands. After the submission finish_build()
+    /// tells whether everything fitted; if not, it is to be recorded again.
+    void record_build(Commands& commands);
+    bool finish_build(Commands& commands) { return cubes_.finish(commands); }
+
     const SceneCubes& cubes() const { return cubes_; }
+    const Instances& instances() const { return instances_; }
     std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }
     std::vector<uint32_t> shown() const { return shown_; }  ///< instances of each body
     const std::vector<PassTime>& build_times() const { return build_times_; }
