@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 /// What was not given: the defaults of each kind of run.
 BenchArguments with_defaults(BenchArguments a) {
     using Resolutions = std::vector<std::optional<uint32_t>>;
-    a.size = a.given_size.value_or(a.quick ? glm::uvec2(320, 256) : glm::uvec2(1280, 1024));
-    a.repeat = a.given_repeat.value_or(a.quick ? 5 : 20);
+    a.size = a.given_size.value_or(a.quick ? glm::uvec2(256, 192) : glm::uvec2(1280, 1024));
+    a.repeat = a.given_repeat.value_or(a.quick ? 3 : 20);
     if (a.paper) {
         if (a.ldc.empty()) a.ldc = Resolutions{512, 1024};
         return a;
@@ -31,7 +31,7 @@ BenchArguments with_defaults(BenchArguments a) {
     }
     if (a.traversals.empty()) a.traversals = {"voxel"};
     if (a.rays.empty()) a.rays = ray_kind_names();
-    if (a.ldc.empty()) a.ldc = a.quick ? Resolutions{std::nullopt} : Resolutions{std::nullopt, 256, 512, 1024};
+    if (a.ldc.empty()) a.ldc = Resolutions{std::nullopt, 256, 512, 1024};
     if (!a.sizes && !a.quick)
         a.sizes = {{360, 280}, {640, 512}, {1280, 1024}, {2560, 2048}, {4096, 3280}, {6400, 5120}};
     return a;

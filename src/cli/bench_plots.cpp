@@ -62,7 +62,7 @@ void write_plots(const std::filesystem::path& folder, const std::vector<RayRow>&
         },
         [](const RayRow& row) {
             const TracedSet* mirror = row.set(RayKind::mirror);
-            return mirror->counts() ? Value(mirror->time.median) : std::nullopt;
+            return mirror && mirror->counts() ? Value(mirror->time.median) : std::nullopt;
         });
     const auto scene_and_hit = [](const RayRow& row) { return row.scene + ", " + row.contender; };
     const auto resolution = [](const RayRow& row) {

@@ -370,8 +370,8 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         "the paper's Table 1 again: (A) building the cubes of five scenes, all anew for every frame, (B) the rest of "
         "the frame");
     CLI::Option* quick = app.add_flag("--quick", a.quick,
-                                      "a small selection, in two minutes on two CPU cores: three scenes, pictures of "
-                                      "320x256, 5 runs")
+                                      "a small fixed selection, in two minutes on two CPU cores: two blobs and the "
+                                      "room, pictures of 256x192, exact, planar at 256, 3 runs")
                              ->excludes(paper);
     CLI::Option* automatic =
         app.add_flag("--auto-check", a.auto_check,
@@ -390,43 +390,51 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         app, "--scenes", a.scenes, parse_bench_scenes, "a list of scenes, each once",
         "a list out of bunny,car,dragon,igea,tiny, built-in scenes and files (--paper: those five); default: the "
         "five, blobs of 8 thousand to 10 million triangles, and room")
-        ->type_name("LIST");
+        ->type_name("LIST")
+        ->excludes(quick);
     add_parsed(app, "--size", a.given_size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
                "width and height of the picture")
         ->type_name("WIDTHxHEIGHT")
-        ->default_str("1280x1024");
+        ->default_str("1280x1024")
+        ->excludes(quick);
     add_number<uint32_t>(app, "--repeat", a.given_repeat,
                          "how often everything is measured, after some that warm up; times are medians")
-        ->default_str("20");
+        ->default_str("20")
+        ->excludes(quick);
 
     const char* group = "What is measured";
     add_parsed(app, "--hits", a.hits, parse_hit_tests, "a list out of tolerance,planar,exact, each once",
                "a list out of planar,exact, of --paper also tolerance; default: exact,planar")
         ->type_name("LIST")
-        ->group(group);
+        ->group(group)
+        ->excludes(quick);
     add_parsed(app, "--ldc", a.ldc, parse_resolutions, "a list of numbers such as 512,1024, each once",
                "resolutions of the LDIs, 16 to 2048, or auto; default: auto,256,512,1024; of --paper: 512,1024")
         ->type_name("LIST")
-        ->group(group);
+        ->group(group)
+        ->excludes(quick);
     add_parsed(app, "--traversals", a.traversals, parse_traversals, "a list out of two-level,mipmap,voxel, each once",
                "a list out of two-level,mipmap,voxel; default: voxel")
         ->type_name("LIST")
         ->excludes(automatic)
-        ->group(group);
+        ->group(group)
+        ->excludes(quick);
     add_parsed(app, "--rays", a.rays, parse_ray_kinds,
                "a list out of primary,mirror,refraction,shadow,ambient,diffuse, each once",
                "a list out of primary,mirror,refraction,shadow,ambient,diffuse; default: all")
         ->type_name("LIST")
         ->excludes(paper)
         ->excludes(automatic)
-        ->group(group);
+        ->group(group)
+        ->excludes(quick);
     add_parsed(app, "--sizes", a.sizes, parse_sizes, "a list of picture sizes, each once, or none",
                "picture sizes for a series: mirror rays of the blob that is nearest to 300000 triangles; default: "
                "360x280 to 6400x5120, with --quick none")
         ->type_name("LIST|none")
         ->excludes(paper)
         ->excludes(automatic)
-        ->group(group);
+        ->group(group)
+        ->excludes(quick);
 
     const char* ways =
         "Of --paper (default: the paper's system, peel with two-level and tolerance, and ours, compute with voxel and "

@@ -192,6 +192,7 @@ TEST_F(RayBenchTest, WrongUsage) {
         {{"--block", "8"}, "--block requires --paper"},
         {{"--all"}, "--all requires --paper"},
         {{"--auto-check", "--quick"}, "excludes"},
+        {{"--quick"}, "excludes"},
         {{"--unknown"}, "unknown option '--unknown'"}};
     for (const auto& [words, says] : cases) {
         SCOPED_TRACE(testing::PrintToString(words));
