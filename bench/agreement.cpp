@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "ldc/ray_sets.h"
-#include "reference/oracle.h"
+#include "reference/planar_answer.h"
 #include "render/ray_scene.h"
 
 namespace peelray {
@@ -119,7 +119,8 @@ class Bench {
             if (off > tally.worst.off) tally.worst = {off, ray, hit, answer.right};
             return;
         }
-        if (test_ == HitTest::planar && right_beside(answer)) {
+        if (test_ == HitTest::planar &&
+            right_beside(oracle_, geometry_, oracle_ray(ray), hit.triangle != ~0u ? double(hit.t) : INFINITY, voxel_)) {
             tally.beside++;
             return;
         }
@@ -132,35 +133,10 @@ class Bench {
         if (off > tally.worst_wrong.off) tally.worst_wrong = {off, ray, hit, answer.right};
     }
 
-    /// Is a planar answer right, within a voxel, for a parallel ray that runs at most a voxel beside the ray? Samples
-    /// know edges no better than that.
-    bool right_beside(const Case& answer) const {
-        const glm::dvec3 d = glm::normalize(glm::dvec3(answer.ray.direction));
-        const glm::dvec3 x =
-            glm::normalize(glm::cross(d, std::abs(d.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-        const glm::dvec3 y = glm::cross(d, x);
-        for (double radius : {0.25, 0.5, 0.75, 1.0})
-            for (int i = 0; i < 12; i++) {
-                OracleRay moved = oracle_ray(answer.ray);
-                const double angle = i * 0.5235987755982988, r = radius * double(voxel_);
-                moved.origin += r * (std::cos(angle) * x + std::sin(angle) * y);
-                Case other = answer;
-                other.right = oracle_.closest(moved);
-                if (distance(other) * oracle_.diagonal() <= double(voxel_)) return true;
-            }
-        return false;
-    }
-
     /// How far the answer is off, across the surface that is right, of the diagonal.
     double distance(const Case& answer) const {
-        const bool found = answer.hit.triangle != ~0u;
-        if (!found || !answer.right.hit()) return found == answer.right.hit() ? 0 : INFINITY;
-        const glm::uvec3 corners = geometry_.triangles[answer.right.triangle];
-        const glm::dvec3 a = geometry_.positions[corners.x], b = geometry_.positions[corners.y],
-                         c = geometry_.positions[corners.z];
-        const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
-        const double across = std::abs(glm::dot(normal, glm::dvec3(answer.ray.direction)));
-        return std::abs(answer.hit.t - answer.right.t) * across / oracle_.diagonal();
+        const double t = answer.hit.triangle != ~0u ? double(answer.hit.t) : INFINITY;
+        return distance_off(geometry_, oracle_ray(answer.ray), t, answer.right) / oracle_.diagonal();
     }
 
     Device& device_;

@@ -2,17 +2,15 @@
 //
 //     hierarchies builtin:teapots bunny.off --rays 2000000 --ldc 512 --out hierarchies.json
 //
-// All hits are exact. Embree takes single rays on all cores, its own triangle test; the cubes are built on the device.
-#include <embree3/rtcore.h>
-
+// All hits are exact. Embree takes single rays or packets on all cores, its own triangle test; the cubes are built on
+// the device.
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/error.h"
+#include "bench/embree_contender.h"
 #include "ldc/ray_sets.h"
 #include "render/ray_scene.h"
 
@@ -28,82 +26,10 @@ struct Options {
     std::string device, out;
 };
 
-double now_ms() {
-    const auto time = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double, std::milli>(time).count();
-}
-
 double median(std::vector<double> values) {
     std::nth_element(values.begin(), values.begin() + ptrdiff_t(values.size() / 2), values.end());
     return values[values.size() / 2];
 }
-
-/// Embree's BVH over a scene's triangles.
-class Embree {
-  public:
-    explicit Embree(const Geometry& geometry) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-        RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* positions =
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, geometry.positions.size());
-        std::memcpy(positions, geometry.positions.data(), geometry.positions.size() * 12);
-        void* indices =
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, geometry.triangles.size());
-        std::memcpy(indices, geometry.triangles.data(), geometry.triangles.size() * 12);
-        rtcCommitGeometry(mesh);
-        rtcAttachGeometry(scene_, mesh);
-        rtcReleaseGeometry(mesh);
-        const double start = now_ms();
-        rtcCommitScene(scene_);
-        build_ms = now_ms() - start;
-    }
-    ~Embree() {
-        rtcReleaseScene(scene_);
-        rtcReleaseDevice(device_);
-    }
-
-    /// Milliseconds for all rays on all cores; `hits`: how many hit something.
-    double trace(const std::vector<Ray>& rays, std::atomic<size_t>& hits) const {
-        std::atomic<size_t> next{0};
-        std::vector<std::thread> threads;
-        const double start = now_ms();
-        for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); i++)
-            threads.emplace_back([&] {
-                size_t found = 0;
-                for (size_t first; (first = next.fetch_add(4096)) < rays.size();)
-                    for (size_t k = first; k < std::min(rays.size(), first + 4096); k++) found += hit(rays[k]);
-                hits += found;
-            });
-        for (std::thread& thread : threads) thread.join();
-        return now_ms() - start;
-    }
-
-    double build_ms = 0;
-
-  private:
-    bool hit(const Ray& ray) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRayHit query{};
-        query.ray = {ray.origin.x,
-                     ray.origin.y,
-                     ray.origin.z,
-                     ray.tmin,
-                     ray.direction.x,
-                     ray.direction.y,
-                     ray.direction.z,
-                     0,
-                     ray.tmax,
-                     ~0u,
-                     0,
-                     0};
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &query);
-        return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    }
-
-    RTCDevice device_;
-    RTCScene scene_;
-};
 
 /// Tracing alone on the device, milliseconds, and what hits something.
 double trace_on_gpu(Device& device, RayScene& scene, const std::vector<Ray>& rays, uint32_t repeat, size_t& found) {
@@ -127,7 +53,8 @@ double trace_on_gpu(Device& device, RayScene& scene, const std::vector<Ray>& ray
 Json measure(Device& device, const std::string& name, const Options& options) {
     const Scene scene = load_scene(name);
     const Geometry geometry = flatten(scene);
-    const Embree embree(geometry);
+    EmbreeContender embree(geometry);
+    const Timing embree_build = embree.time_build(1);
     Json result = {{"scene", name}, {"triangles", geometry.triangles.size()}};
     const auto rate = [&](double ms) { return double(options.rays) / ms * 1e-3; };
     for (const RayKind kind : {RayKind::uniform, RayKind::on_surface}) {
@@ -135,17 +62,15 @@ Json measure(Device& device, const std::string& name, const Options& options) {
         std::vector<Ray> rays(options.rays);
         for (Ray& ray : rays) ray = source.make(kind);
         Json& row = result["rays"][test::name_of(kind)];
-        std::vector<double> times;
-        std::atomic<size_t> hits{0};
-        for (uint32_t i = 0; i <= options.repeat; i++) {
-            hits = 0;
-            const double ms = embree.trace(rays, hits);
-            if (i > 0) times.push_back(ms);
-        }
-        row["embree"] = {
-            {"build_ms", embree.build_ms}, {"mrays_per_second", rate(median(times))}, {"hits", hits.load()}};
-        fmt::print("{} ({} triangles), {}: Embree {:.1f} Mrays/s (build {:.1f} ms)", name, geometry.triangles.size(),
-                   test::name_of(kind), rate(median(times)), embree.build_ms);
+        embree.take(rays);
+        const double embree_rate = rate(embree.time_trace(false, options.repeat).median);
+        const std::vector<FileHit> answers = embree.answers();
+        row["embree"] = {{"build_ms", embree_build.median},
+                         {"mrays_per_second", embree_rate},
+                         {"hits", std::count_if(answers.begin(), answers.end(),
+                                                [](const FileHit& hit) { return hit.triangle != ~0u; })}};
+        fmt::print("{} ({} triangles), {}: Embree {:.1f} Mrays/s by {} (build {:.1f} ms)", name,
+                   geometry.triangles.size(), test::name_of(kind), embree_rate, embree.way(), embree_build.median);
         for (const Traversal traversal : {Traversal::voxel, Traversal::two_level, Traversal::mipmap}) {
             CubeChoice choice;
             choice.ldc = options.ldc;

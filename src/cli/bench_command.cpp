@@ -1,14 +1,11 @@
-// `peelray bench`.
-#include <algorithm>
-#include <cmath>
+// `peelray bench`: what was asked for, and whether that makes sense.
 #include <fstream>
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/progress.h"
-#include "cli/paper_table.h"
-#include "cli/picture_maker.h"
-#include "cli/stats.h"
+#include "cli/bench.h"
+#include "cli/bench_scenes.h"
+#include "cli/prepare.h"
 #include "cli/values.h"
 #include "image/image.h"
 
@@ -16,338 +13,51 @@ namespace peelray {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-/// A way to build cubes and trace in them, by the names of the command line.
-struct Combination {
-    std::string builder, traversal, hit;
-};
-
-/// The paper's system and ours; where a list was given, or --all, everything.
-std::vector<Combination> choose_combinations(const BenchArguments& a) {
-    if (!a.all && a.builders.empty() && a.traversals.empty() && a.hits.empty())
-        return {{"peel", "two-level", "tolerance"}, {"compute", "voxel", "exact"}, {"compute", "voxel", "planar"}};
-    const auto chosen = [](const std::vector<std::string>& list, const std::vector<std::string>& all) {
-        return list.empty() ? all : list;
-    };
-    std::vector<Combination> combinations;
-    for (const std::string& builder : chosen(a.builders, builder_names()))
-        for (const std::string& traversal : chosen(a.traversals, traversal_names()))
-            for (const std::string& hit : chosen(a.hits, hit_test_names()))
-                combinations.push_back({builder, traversal, hit});
-    return combinations;
-}
-
-std::vector<const PaperScene*> choose_scenes(const BenchArguments& a) {
-    std::vector<const PaperScene*> scenes;
-    for (const PaperScene& scene : paper_scenes())
-        if (a.scenes.empty() || std::find(a.scenes.begin(), a.scenes.end(), scene.name) != a.scenes.end())
-            scenes.push_back(&scene);
-    return scenes;
-}
-
-/// The depth complexity of a scene's LDIs: the samples of the fullest pixel of all. The one place that knows where the
-/// stats say it; none: they count lists of voxels, which is another thing.
-std::optional<uint32_t> depth_complexity(const Json& stats) {
-    if (!stats.contains("ldc") || stats["ldc"].value("layers_of", "") != "pixel") return std::nullopt;
-    return stats["ldc"]["layers"].get<uint32_t>();
-}
-
-/// Frames that come before those that are measured, beside the renderer's own first one: a GPU that was idle needs some
-/// to raise its clock.
-constexpr uint32_t kWarmUp = 4;
-/// The same where every moment of an animation is measured by itself.
-constexpr uint32_t kWarmUpOfMoment = 2;
-
-float longest_side(const Box& box) {
-    const glm::vec3 size = box.upper - box.lower;
-    return std::max({size.x, size.y, size.z});
-}
-
-/// Times and the last frame's stats of what was measured.
-void summarise(const std::vector<MadePicture>& pictures, BenchRow& row) {
-    std::vector<double> a, b, frame;
-    std::vector<std::pair<std::string, std::vector<double>>> passes;
-    for (const MadePicture& picture : pictures) {
-        for (const RenderStats::FrameTime& time : picture.times) {
-            a.push_back(time.build_ms);
-            b.push_back(time.frame_ms - time.build_ms);
-            frame.push_back(time.frame_ms);
-        }
-        for (const Json& pass : picture.stats["passes"]) {
-            const auto name = pass["name"].get<std::string>();
-            auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
-            if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
-            found->second.push_back(pass["ms"].get<double>());
-        }
+/// What was not given: the defaults of each kind of run.
+BenchArguments with_defaults(BenchArguments a) {
+    using Resolutions = std::vector<std::optional<uint32_t>>;
+    a.size = a.given_size.value_or(a.quick ? glm::uvec2(256, 192) : glm::uvec2(1280, 1024));
+    a.repeat = a.given_repeat.value_or(a.quick ? 3 : 20);
+    if (a.paper) {
+        if (a.ldc.empty()) a.ldc = Resolutions{512, 1024};
+        return a;
     }
-    row.a = spread_of(a);
-    row.b = spread_of(b);
-    row.frame = spread_of(frame);
-    for (const auto& [name, ms] : passes) row.passes.push_back({name, spread_of(ms).median});
-    row.stats = pictures.back().stats;
-}
-
-/// The box of what a built-in scene is about: the object of most triangles.
-Box largest_object(const Geometry& geometry) {
-    const auto object = std::max_element(geometry.objects.begin(), geometry.objects.end(),
-                                         [](const auto& a, const auto& b) { return a.count < b.count; });
-    Box box;
-    for (uint32_t i = object->first; i < object->first + object->count; i++)
-        for (int k = 0; k < 3; k++) box.add(geometry.positions[geometry.triangles[i][k]]);
-    return box;
-}
-
-/// One scene of the table, ready to be measured.
-class BenchScene {
-  public:
-    /// Throws Error where the scene cannot be had.
-    BenchScene(const PaperScene& scene, const BenchArguments& a, const std::optional<fs::path>& file);
-
-    uint64_t triangles() const { return scene_->triangles; }
-    double tolerance() const { return tolerance_; }
-    /// Fills in what was measured. Throws Error where that cannot be done, Interrupted.
-    void measure(BenchRow& row, const std::function<void(double)>& progress);
-    /// After an Error: what follows gets a device that is as new. Throws Error if the validation layers said anything,
-    /// which must not be passed over.
-    void recover();
-
-  private:
-    std::vector<MadePicture> render(const RenderSettings& settings, const std::function<void(double)>& progress);
-    uint32_t object_pixels(const Json& cubes) const;
-    MadePicture make(RenderSettings settings, uint32_t warm_up, const Moment& moment,
-                     const std::function<void(double)>& progress);
-
-    PictureArguments arguments_;
-    std::optional<PreparedScene> scene_;
-    std::unique_ptr<PictureMaker> maker_;
-    bool rendered_ = false;  ///< something has been rendered since the last look
-    double tolerance_ = 0, duration_ = 0;
-    float object_side_ = 0;  ///< longest, of what stands on the floor
-    uint32_t repeat_;
-};
-
-BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const std::optional<fs::path>& file)
-    : repeat_(a.repeat) {
-    PictureArguments& p = arguments_;
-    p.scene = file ? file->string() : scene.stand_in;
-    p.size = a.size;
-    p.device = a.device;
-    p.rebuild = true;
-    p.tracing.block = a.block;
-    p.tracing.routing = a.routing;
-    p.floor = file.has_value();
-    if (file) p.material = scene.material;
-    p.animation = file ? scene.animation : scene.stand_in_animation;
-    if (!p.animation.empty()) p.time = 0;
-    scene_ = prepare_scene(p);
-    if (p.time) duration_ = find_animations(scene_->scene, p.animation).front()->duration;
-    object_side_ = longest_side(file ? scene_->framed : largest_object(scene_->geometry()));
-    // Meshes come in metres, inches or what their scanner had: the paper's 0.001 is taken for an object of one unit, of
-    // which it is a pixel of 1024 (docs/paper.md).
-    tolerance_ = a.tolerance.value_or(0.001 * object_side_);
-    p.tracing.tolerance = tolerance_;
-}
-
-/// The picture of one moment with the times of `settings.repeat` frames, those that warm up left out.
-MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Moment& moment,
-                             const std::function<void(double)>& progress) {
-    const uint32_t frames = settings.repeat;
-    if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
-    MadePicture made = maker_->make("ldc", settings, moment, progress);
-    made.times.erase(made.times.begin(), made.times.end() - frames);
-    return made;
-}
-
-/// All frames at one moment, or one at each of as many moments of an animation.
-std::vector<MadePicture> BenchScene::render(const RenderSettings& settings,
-                                            const std::function<void(double)>& progress) {
-    std::vector<MadePicture> pictures;
-    if (duration_ == 0) {
-        pictures.push_back(make(settings, kWarmUp, {}, progress));
-        return pictures;
+    if (a.scenes.empty()) a.scenes = a.quick ? quick_bench_scenes() : default_bench_scenes();
+    if (a.hits.empty()) a.hits = {"exact", "planar"};
+    if (a.auto_check) {
+        if (a.ldc.empty()) a.ldc = Resolutions{64, 128, 192, 256, 384, 512, 768, 1024};
+        return a;
     }
-    RenderSettings of_moment = settings;
-    of_moment.repeat = 1;
-    for (uint32_t i = 0; i < repeat_; i++) {
-        pictures.push_back(make(of_moment, kWarmUpOfMoment, {duration_ * i / repeat_},
-                                [&](double share) { progress((i + share) / repeat_); }));
-        pictures.back().picture = {};  // of no use, and large
-    }
-    return pictures;
-}
-
-/// Pixels along the longest side of what stands on the floor, in the cube that holds most triangles.
-uint32_t BenchScene::object_pixels(const Json& cubes) const {
-    const auto most = std::max_element(cubes.begin(), cubes.end(), [](const Json& a, const Json& b) {
-        return a["triangles"].get<uint64_t>() < b["triangles"].get<uint64_t>();
-    });
-    return uint32_t(std::lround(object_side_ / (*most)["voxel_size"].get<float>()));
-}
-
-void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progress) {
-    TracingArguments& tracing = arguments_.tracing;
-    tracing.builder = row.builder;
-    tracing.traversal = row.traversal;
-    tracing.hit = row.hit;
-    tracing.ldc = row.ldc;
-    // What the options exclude costs no device: some drivers cannot be opened any number of times by one process.
-    rendered_ = false;
-    tracing.check();
-    RenderSettings settings = settings_of(arguments_);
-    settings.repeat = repeat_;
-    settings.ldc_each = true;
-    if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
-    rendered_ = true;
-    summarise(render(settings, progress), row);
-    row.object_pixels = object_pixels(row.stats["ldc"]["cubes"]);
-    row.layers = depth_complexity(row.stats);
-}
-
-void BenchScene::recover() {
-    if (!rendered_) return;
-    maker_->check_validation();
-    maker_.reset();
-    rendered_ = false;
-}
-
-/// A run of `bench --paper`.
-class PaperBench {
-  public:
-    explicit PaperBench(const BenchArguments& a)
-        : a_(a), combinations_(choose_combinations(a)), scenes_(choose_scenes(a)) {
-        const Device device({a.device.device, a.device.validate});
-        if (device.timestamp_period() == 0)
-            fail("the device '{}' has no timestamps: nothing can be measured on it; choose another (--device)",
-                 device.info().name);
-        device_ = device_stats(device);
-    }
-
-    void run();
-
-  private:
-    size_t rows_in_all() const { return scenes_.size() * combinations_.size() * a_.ldc.size(); }
-    void measure(const PaperScene& scene, Progress& bar);
-    void say(const std::string& text);
-    void add(const BenchRow& row);
-    void write(bool complete) const;
-
-    const BenchArguments& a_;
-    std::vector<Combination> combinations_;
-    std::vector<const PaperScene*> scenes_;
-    Json device_, rows_ = Json::array();
-    std::string table_, reason_;  ///< reason_: why the first row was left out
-    size_t measured_ = 0;
-};
-
-void PaperBench::say(const std::string& text) {
-    table_ += text;
-    fmt::print("{}", text);
-    std::fflush(stdout);
-}
-
-/// What there is goes to the files at once, so that nothing that ends the run takes it away.
-void PaperBench::add(const BenchRow& row) {
-    rows_.push_back(row_json(row));
-    if (row.left_out.empty())
-        measured_++;
-    else if (reason_.empty())
-        reason_ = row.left_out;
-    say(table_row(row));
-    write(false);
-}
-
-void PaperBench::write(bool complete) const {
-    if (!a_.output.empty()) {
-        Json json = {{"benchmark", "paper"}};
-        json.update(device_);
-        json["image"] = {a_.size.x, a_.size.y};
-        json["frames"] = a_.repeat;
-        json["block"] = {a_.block.x, a_.block.y};
-        json["routing"] = a_.routing;
-        const PictureArguments defaults;
-        json["bounces"] = defaults.bounces;
-        json["spp"] = defaults.spp;
-        json["effects"] = defaults.effects;
-        json["rebuild"] = true;
-        json["complete"] = complete;
-        json["rows"] = rows_;
-        write_json(a_.output, json);
-    }
-    if (a_.markdown.empty()) return;
-    write_atomically(a_.markdown, [&](const fs::path& temporary) {
-        std::ofstream stream(temporary);
-        stream << table_ << (complete ? "" : table_foot());
-        stream.close();
-        if (!stream) fail("cannot write '{}': is the disk full?", a_.markdown.string());
-    });
-}
-
-void PaperBench::measure(const PaperScene& paper, Progress& bar) {
-    const auto file = find_model(a_.models.value_or("models"), paper);
-    if (!file)
-        print_note(fmt::format("{}: there is no {}: {} stands in (--models)", paper.name, paper.file, paper.stand_in));
-    std::optional<BenchScene> scene;
-    std::string unusable;
-    try {
-        scene.emplace(paper, a_, file);
-    } catch (const Error& error) {
-        unusable = error.what();
-    }
-    for (const Combination& c : combinations_)
-        for (const uint32_t ldc : a_.ldc) {
-            check_interrupt();
-            const double done = double(rows_.size());
-            BenchRow row{&paper, file ? file->filename().string() : paper.stand_in, !file};
-            row.builder = c.builder;
-            row.traversal = c.traversal;
-            row.hit = c.hit;
-            row.ldc = ldc;
-            row.left_out = unusable;
-            if (scene) {
-                row.triangles = scene->triangles();
-                row.tolerance = scene->tolerance();
-                try {
-                    scene->measure(row, [&](double share) { bar.update(done + share); });
-                } catch (const Interrupted&) {
-                    throw;
-                } catch (const Error& error) {
-                    row.left_out = error.what();
-                    scene->recover();
-                }
-            }
-            add(row);
-            bar.update(done + 1);
-        }
-}
-
-void PaperBench::run() {
-    say(table_head(a_, device_));
-    Progress bar("measuring", double(rows_in_all()), "rows");
-    try {
-        for (const PaperScene* scene : scenes_) measure(*scene, bar);
-    } catch (const Interrupted&) {
-        say(table_foot());
-        write(false);
-        fail("interrupted after {} of {} rows{}", rows_.size(), rows_in_all(),
-             a_.output.empty() ? "" : fmt::format(", which {} holds", a_.output.string()));
-    }
-    say(table_foot());
-    write(true);
-    if (measured_ == 0) fail("none of the {} rows could be measured: {}", rows_.size(), reason_);
+    if (a.traversals.empty()) a.traversals = {"voxel"};
+    if (a.rays.empty()) a.rays = ray_kind_names();
+    if (a.ldc.empty()) a.ldc = Resolutions{std::nullopt, 256, 512, 1024};
+    if (!a.sizes && !a.quick)
+        a.sizes = {{360, 280}, {640, 512}, {1280, 1024}, {2560, 2048}, {4096, 3280}, {6400, 5120}};
+    return a;
 }
 
 void check_arguments(const BenchArguments& a) {
     PictureArguments p;
-    p.size = a.size;
     p.repeat = a.repeat;
-    check_ranges(p);
-    for (const uint32_t ldc : a.ldc) {
+    std::vector<glm::uvec2> sizes = a.sizes.value_or(std::vector<glm::uvec2>());
+    sizes.push_back(a.size);
+    for (const glm::uvec2& size : sizes) {
+        p.size = size;
+        check_ranges(p);
+    }
+    for (const auto& ldc : a.ldc) {
         TracingArguments tracing;
         tracing.ldc = ldc;
         tracing.block = a.block;
         tracing.tolerance = a.tolerance.value_or(tracing.tolerance);
         tracing.check();
+    }
+    if (!a.paper) {
+        for (const std::string& scene : a.scenes) check_bench_scene(scene);
+        for (const std::string& hit : a.hits)
+            if (hit == "tolerance")
+                fail("'tolerance' has no right answers to compare with: it is measured by 'bench --paper' (--hits)");
     }
     std::error_code error;
     if (a.models && !fs::is_directory(*a.models, error))
@@ -357,15 +67,42 @@ void check_arguments(const BenchArguments& a) {
     for (const fs::path& path : {a.output, a.markdown})
         if (!path.empty()) outputs.push_back(path);
     check_outputs(outputs, {});
+    if (a.plots.empty()) return;
+    fs::create_directories(a.plots, error);
+    if (error || !fs::is_directory(a.plots))
+        fail("cannot make the folder '{}': choose another (--plots)", a.plots.string());
 }
 
 }  // namespace
 
-void run_bench(const BenchArguments& a) {
-    if (!a.paper) fail("'bench' has only the paper's table yet: 'peelray bench --paper'");
+void check_timestamps(const Device& device) {
+    if (device.timestamp_period() == 0)
+        fail("the device '{}' has no timestamps: nothing can be measured on it; choose another (--device)",
+             device.info().name);
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    write_atomically(path, [&](const fs::path& temporary) {
+        std::ofstream stream(temporary);
+        stream << text;
+        stream.close();
+        if (!stream) fail("cannot write '{}': is the disk full?", path.string());
+    });
+}
+
+void run_bench(const BenchArguments& given) {
+    const BenchArguments a = with_defaults(given);
     check_arguments(a);
     watch_interrupts();
-    PaperBench(a).run();
+    if (a.paper) return run_paper_bench(a);
+    if (a.auto_check) return run_auto_check(a);
+#ifdef PEELRAY_WITH_REFERENCE
+    run_ray_bench(a);
+#else
+    fail(
+        "this program was built without the reference (PEELRAY_REFERENCE=OFF), which makes and judges the rays: there "
+        "are --paper and --auto-check");
+#endif
 }
 
 }  // namespace peelray

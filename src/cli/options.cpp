@@ -1,6 +1,8 @@
 #include "cli/options.h"
 
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 
 #include "base/error.h"
@@ -368,10 +370,34 @@ void add_trace(CLI::App& program, TraceArguments& a) {
         "  python3 -c \"import numpy as n; print(n.load('hits.npy'))\"");
 }
 
+/// What belongs together although each option is well-formed. Throws CLI::ValidationError.
+static void check_bench_usage(const BenchArguments& a) {
+    if (!a.paper) return;
+    if (!are_paper_scenes(a.scenes))
+        throw CLI::ValidationError(
+            "--scenes", fmt::format("'{}' is not a list out of bunny,car,dragon,igea,tiny, each once (--paper)",
+                                    fmt::join(a.scenes, ",")));
+    if (std::find(a.ldc.begin(), a.ldc.end(), std::nullopt) != a.ldc.end())
+        throw CLI::ValidationError(
+            "--ldc", "'auto' is not a list of numbers such as 512,1024, each once, as --paper needs them");
+}
+
 void add_bench(CLI::App& program, BenchArguments& a) {
-    CLI::App& app = *program.add_subcommand("bench", "Measure: the paper's Table 1 again (--paper)");
-    app.add_flag("--paper", a.paper,
-                 "time its five scenes: (A) building the cubes, all anew for every frame, (B) the rest of the frame");
+    CLI::App& app = *program.add_subcommand(
+        "bench", "Measure: cubes, rays and frames, against rivals on the same rays; the paper's Table 1 (--paper)");
+    CLI::Option* paper = app.add_flag(
+        "--paper", a.paper,
+        "the paper's Table 1 again: (A) building the cubes of five scenes, all anew for every frame, (B) the rest of "
+        "the frame");
+    CLI::Option* quick = app.add_flag("--quick", a.quick,
+                                      "a small fixed selection, in two minutes on two CPU cores: two blobs and the "
+                                      "room, pictures of 256x192, exact, planar at 256, 3 runs")
+                             ->excludes(paper);
+    CLI::Option* automatic =
+        app.add_flag("--auto-check", a.auto_check,
+                     "frames with --ldc auto and --hit auto against the best of fixed resolutions and hit tests")
+            ->excludes(paper)
+            ->excludes(quick);
     app.add_option(
            "--models", a.models,
            "folder with bunny_7k.off, car2.glb, chinesedragon.gltf, igea.ply and tiny.glb, or with folders meshes "
@@ -380,50 +406,92 @@ void add_bench(CLI::App& program, BenchArguments& a) {
            "tiny.glb, the walker")
         ->type_name("FOLDER")
         ->default_str("models");
-    add_parsed(app, "--scenes", a.scenes, parse_paper_scenes, "a list out of bunny,car,dragon,igea,tiny, each once",
-               "a list out of bunny,car,dragon,igea,tiny; default: all")
-        ->type_name("LIST");
-    add_parsed(app, "--size", a.size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
+    add_parsed(
+        app, "--scenes", a.scenes, parse_bench_scenes, "a list of scenes, each once",
+        "a list out of bunny,car,dragon,igea,tiny, built-in scenes and files (--paper: those five); default: the "
+        "five, blobs of 8 thousand to 10 million triangles, and room")
+        ->type_name("LIST")
+        ->excludes(quick);
+    add_parsed(app, "--size", a.given_size, parse_size, "a picture size WIDTHxHEIGHT, such as 1280x1024",
                "width and height of the picture")
         ->type_name("WIDTHxHEIGHT")
-        ->default_str("1280x1024");
-    add_number<uint32_t>(app, "--repeat", a.repeat, "frames to measure, after some that warm up; times are medians")
-        ->default_str("20");
+        ->default_str("1280x1024")
+        ->excludes(quick);
+    add_number<uint32_t>(app, "--repeat", a.given_repeat,
+                         "how often everything is measured, after some that warm up; times are medians")
+        ->default_str("20")
+        ->excludes(quick);
 
-    const char* group =
-        "What is measured (default: the paper's system, peel with two-level and tolerance, and ours, compute with "
-        "voxel and exact or planar; with a list or --all: all combinations)";
+    const char* group = "What is measured";
+    add_parsed(app, "--hits", a.hits, parse_hit_tests, "a list out of tolerance,planar,exact, each once",
+               "a list out of planar,exact, of --paper also tolerance; default: exact,planar")
+        ->type_name("LIST")
+        ->group(group)
+        ->excludes(quick);
+    add_parsed(app, "--ldc", a.ldc, parse_resolutions, "a list of numbers such as 512,1024, each once",
+               "resolutions of the LDIs, 16 to 2048, or auto; default: auto,256,512,1024; of --paper: 512,1024")
+        ->type_name("LIST")
+        ->group(group)
+        ->excludes(quick);
+    add_parsed(app, "--traversals", a.traversals, parse_traversals, "a list out of two-level,mipmap,voxel, each once",
+               "a list out of two-level,mipmap,voxel; default: voxel")
+        ->type_name("LIST")
+        ->excludes(automatic)
+        ->group(group)
+        ->excludes(quick);
+    add_parsed(app, "--rays", a.rays, parse_ray_kinds,
+               "a list out of primary,mirror,refraction,shadow,ambient,diffuse, each once",
+               "a list out of primary,mirror,refraction,shadow,ambient,diffuse; default: all")
+        ->type_name("LIST")
+        ->excludes(paper)
+        ->excludes(automatic)
+        ->group(group)
+        ->excludes(quick);
+    add_parsed(app, "--sizes", a.sizes, parse_sizes, "a list of picture sizes, each once, or none",
+               "picture sizes for a series: mirror rays of the blob that is nearest to 300000 triangles; default: "
+               "360x280 to 6400x5120, with --quick none")
+        ->type_name("LIST|none")
+        ->excludes(paper)
+        ->excludes(automatic)
+        ->group(group)
+        ->excludes(quick);
+
+    const char* ways =
+        "Of --paper (default: the paper's system, peel with two-level and tolerance, and ours, compute with voxel and "
+        "exact or planar; with a list or --all: all combinations)";
     add_parsed(app, "--builders", a.builders, parse_builders, "a list out of peel,abuffer,compute, each once",
                "a list out of peel,abuffer,compute")
         ->type_name("LIST")
-        ->group(group);
-    add_parsed(app, "--traversals", a.traversals, parse_traversals, "a list out of two-level,mipmap,voxel, each once",
-               "a list out of two-level,mipmap,voxel")
-        ->type_name("LIST")
-        ->group(group);
-    add_parsed(app, "--hits", a.hits, parse_hit_tests, "a list out of tolerance,planar,exact, each once",
-               "a list out of tolerance,planar,exact")
-        ->type_name("LIST")
-        ->group(group);
-    app.add_flag("--all", a.all, "every combination; what cannot be done is left out, with the reason")->group(group);
-    add_parsed(app, "--ldc", a.ldc, parse_resolutions, "a list of numbers such as 512,1024, each once",
-               "resolutions of the LDIs, 16 to 2048")
-        ->type_name("LIST")
-        ->default_str("512,1024")
-        ->group(group);
-    add_block(app, a.block, "pixels per block of two-level")->group(group);
-    add_routing(app, a.routing, "how peel and abuffer send triangles to the three images")->group(group);
+        ->needs(paper)
+        ->group(ways);
+    app.add_flag("--all", a.all, "every combination; what cannot be done is left out, with the reason")
+        ->needs(paper)
+        ->group(ways);
+    add_block(app, a.block, "pixels per block of two-level")->needs(paper)->group(ways);
+    add_routing(app, a.routing, "how peel and abuffer send triangles to the three images")->needs(paper)->group(ways);
     add_number<double>(app, "--tolerance", a.tolerance,
                        "distance of a hit of tolerance, world units; default: 0.001 if the object were one unit long")
-        ->group(group);
+        ->needs(paper)
+        ->group(ways);
     const char* output = "More output";
     app.add_option("--out", a.output, "also write everything as JSON, after every row")
         ->type_name("FILE.json")
         ->group(output);
     app.add_option("--markdown", a.markdown, "also write the table to a file")->type_name("FILE.md")->group(output);
+    app.add_option("--plots", a.plots,
+                   "also write plots into this folder: against triangles, rays and resolution (.svg)")
+        ->type_name("FOLDER")
+        ->excludes(paper)
+        ->excludes(automatic)
+        ->group(output);
     add_device_options(app, a.device);
+    app.callback([&a] { check_bench_usage(a); });
     app.footer(
+        "The time of rays is withheld when the oracle, a double-precision ray tracer, finds too many answers wrong.\n\n"
         "Examples:\n"
+        "  peelray bench --quick\n"
+        "  peelray bench --models models --out bench.json --markdown bench.md --plots plots\n"
+        "  peelray bench --scenes blob:120000,car.glb --rays mirror,shadow --ldc auto,256 --sizes none\n"
         "  peelray bench --paper --models models --out bench.json\n"
         "  peelray bench --paper --scenes bunny --builders compute --traversals voxel --ldc 256,512,1024");
 }

@@ -97,17 +97,20 @@ struct TraceArguments {
     DeviceArguments device;
 };
 
-/// Lists that are empty stand for the default: see `run_bench`.
+/// Lists that are empty stand for the default, which `run_bench` fills in.
 struct BenchArguments {
-    bool paper = false, all = false;
-    std::vector<std::string> scenes, builders, traversals, hits;
-    std::vector<uint32_t> ldc = {512, 1024};
-    glm::uvec2 block{8}, size{1280, 1024};
+    bool paper = false, all = false, quick = false, auto_check = false;
+    std::vector<std::string> scenes, builders, traversals, hits, rays;
+    std::vector<std::optional<uint32_t>> ldc;      ///< none: auto
+    std::optional<std::vector<glm::uvec2>> sizes;  ///< of the series of picture sizes
+    glm::uvec2 block{8}, size{0};
+    std::optional<glm::uvec2> given_size;  ///< what `size` becomes, if given
     std::string routing = "geometry";
     std::optional<double> tolerance;  ///< none: in proportion to the scene
-    uint32_t repeat = 20;
+    uint32_t repeat = 0;
+    std::optional<uint32_t> given_repeat;
     std::optional<std::filesystem::path> models;  ///< none: the folder "models", if there is one
-    std::filesystem::path output, markdown;
+    std::filesystem::path output, markdown, plots;
     DeviceArguments device;
 };
 

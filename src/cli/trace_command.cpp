@@ -125,7 +125,8 @@ void run_trace(const TraceArguments& a) {
     Device device({a.device.device, a.device.validate});
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");
-        return RayScene(device, scene, assemble(scene, motion_of(scene, "")), choice, a.tracing.tracer == "khr");
+        const auto khr = a.tracing.tracer == "khr" ? std::optional(StructureUpdate::keep) : std::nullopt;
+        return RayScene(device, scene, assemble(scene, motion_of(scene, "")), choice, khr);
     }();
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();

@@ -108,10 +108,17 @@ std::optional<std::vector<std::string>> parse_hits(const std::string& text) {
     return parse_distinct(text, {"auto", "exact", "planar", "tolerance"});
 }
 
-std::optional<std::vector<std::string>> parse_paper_scenes(const std::string& text) {
-    std::vector<std::string> names;
-    for (const PaperScene& scene : paper_scenes()) names.emplace_back(scene.name);
-    return parse_distinct(text, names);
+std::optional<std::vector<std::string>> parse_bench_scenes(const std::string& text) {
+    const std::vector<std::string> names = split(text);
+    const bool empty = std::find(names.begin(), names.end(), "") != names.end();
+    return empty ? std::nullopt : parse_distinct(text, names);
+}
+
+bool are_paper_scenes(const std::vector<std::string>& names) {
+    return std::all_of(names.begin(), names.end(), [](const std::string& name) {
+        return std::any_of(paper_scenes().begin(), paper_scenes().end(),
+                           [&](const PaperScene& scene) { return scene.name == name; });
+    });
 }
 
 std::optional<std::vector<std::string>> parse_builders(const std::string& text) {
@@ -126,14 +133,33 @@ std::optional<std::vector<std::string>> parse_hit_tests(const std::string& text)
     return parse_distinct(text, hit_test_names());
 }
 
-std::optional<std::vector<uint32_t>> parse_resolutions(const std::string& text) {
-    std::vector<uint32_t> numbers;
+std::optional<std::vector<std::string>> parse_ray_kinds(const std::string& text) {
+    return parse_distinct(text, ray_kind_names());
+}
+
+namespace {
+
+/// A list of values that `parse` knows, none twice.
+template <typename Value>
+std::optional<std::vector<Value>> parse_list(const std::string& text,
+                                             std::optional<Value> (*parse)(const std::string&)) {
+    std::vector<Value> values;
     for (const std::string& part : split(text)) {
-        const auto number = parse_number<uint32_t>(part);
-        if (!number || std::find(numbers.begin(), numbers.end(), *number) != numbers.end()) return std::nullopt;
-        numbers.push_back(*number);
+        const std::optional<Value> value = parse(part);
+        if (!value || std::find(values.begin(), values.end(), *value) != values.end()) return std::nullopt;
+        values.push_back(*value);
     }
-    return numbers;
+    return values;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::optional<uint32_t>>> parse_resolutions(const std::string& text) {
+    return parse_list(text, parse_resolution);
+}
+
+std::optional<std::vector<glm::uvec2>> parse_sizes(const std::string& text) {
+    return text == "none" ? std::optional(std::vector<glm::uvec2>()) : parse_list(text, parse_size);
 }
 
 const std::vector<std::string>& builder_names() {
@@ -148,6 +174,11 @@ const std::vector<std::string>& traversal_names() {
 
 const std::vector<std::string>& hit_test_names() {
     static const std::vector<std::string> names = {"tolerance", "planar", "exact"};
+    return names;
+}
+
+const std::vector<std::string>& ray_kind_names() {
+    static const std::vector<std::string> names = {"primary", "mirror", "refraction", "shadow", "ambient", "diffuse"};
     return names;
 }
 

@@ -47,17 +47,22 @@ std::optional<std::vector<std::string>> parse_tracers(const std::string& text);
 /// Hit tests to compare; none twice.
 std::optional<std::vector<std::string>> parse_hits(const std::string& text);
 
-/// What `bench` runs through, lists with nothing twice: scenes of the paper's table, builders, traversals, hit tests
-/// (without "auto"), resolutions.
-std::optional<std::vector<std::string>> parse_paper_scenes(const std::string& text);
+/// What `bench` runs through, lists with nothing twice: scenes (any names, none empty), builders, traversals, hit tests
+/// (without "auto"), kinds of rays, resolutions ("auto": none), picture sizes ("none": an empty list).
+std::optional<std::vector<std::string>> parse_bench_scenes(const std::string& text);
+/// Is each of them one of the paper's?
+bool are_paper_scenes(const std::vector<std::string>& names);
 std::optional<std::vector<std::string>> parse_builders(const std::string& text);
 std::optional<std::vector<std::string>> parse_traversals(const std::string& text);
 std::optional<std::vector<std::string>> parse_hit_tests(const std::string& text);
-std::optional<std::vector<uint32_t>> parse_resolutions(const std::string& text);
+std::optional<std::vector<std::string>> parse_ray_kinds(const std::string& text);
+std::optional<std::vector<std::optional<uint32_t>>> parse_resolutions(const std::string& text);
+std::optional<std::vector<glm::uvec2>> parse_sizes(const std::string& text);
 
 const std::vector<std::string>& builder_names();
 const std::vector<std::string>& traversal_names();
 const std::vector<std::string>& hit_test_names();
+const std::vector<std::string>& ray_kind_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& aov_names();
 /// The auxiliary pictures of what the paper sets up before it traces (Figure 7).

@@ -8,7 +8,8 @@
 
 namespace peelray {
 
-RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice, bool khr)
+RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice,
+                   std::optional<StructureUpdate> khr)
     : device_(device),
       triangles_(device, assembly.positions, assembly.triangles),
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
@@ -24,13 +25,16 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
     instances_.place(commands, transforms_of(assembly.instances, world_matrices(scene)));
     for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;
     if (khr)
-        build_structures(commands, scene, assembly);
+        build_structures(commands, scene, assembly, *khr);
     else
         build_cubes(commands);
 }
 
-void RayScene::build_structures(Commands& commands, const Scene& scene, const Assembly& assembly) {
-    structures_ = std::make_unique<Structures>(device_, triangles_, instances_, structure_bodies(scene, assembly));
+void RayScene::build_structures(Commands& commands, const Scene& scene, const Assembly& assembly,
+                                StructureUpdate update) {
+    std::vector<StructureBody> bodies = structure_bodies(scene, assembly);
+    for (StructureBody& body : bodies) body.update = update;
+    structures_ = std::make_unique<Structures>(device_, triangles_, instances_, bodies);
     const auto count = [&] {
         build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());
         build_ms_ += commands.elapsed_ms();
@@ -47,10 +51,9 @@ void RayScene::build_cubes(Commands& commands) {
     for (bool built = false; !built;) {
         const bool fixed = cubes_.build_fixed(commands, triangles_);
         if (fixed) build_times_ = commands.times(), build_ms_ = commands.elapsed_ms();
-        cubes_.record(commands, triangles_);
-        instances_.record(commands, cubes_.cubes());
+        record_build(commands);
         commands.submit();
-        built = cubes_.finish(commands);
+        built = finish_build(commands);
     }
     build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());
     build_ms_ += commands.elapsed_ms();
@@ -59,14 +62,28 @@ void RayScene::build_cubes(Commands& commands) {
 void RayScene::record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
                       const CountBuffers* counting) {
     ensure_size(device_, hits_, "hits", uint64_t(count) * sizeof(Hit));
-    if (structures_)
-        record_khr_trace(commands, device_, *structures_, triangles_, {rays, nullptr, count}, hits_, any_hit);
     RayQueue queue{rays, nullptr, count};
     queue.counting = counting;
-    if (!structures_)
-        record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, queue, hits_,
-                     {cubes_.choice().hit, cubes_.choice().tolerance, any_hit});
-    record_file_hits(commands, device_, instances_, triangle_ids_, hits_, count, file_hits);
+    record_hits(commands, queue, hits_, any_hit, Edges::precise);
+    record_translation(commands, hits_, count, file_hits);
+}
+
+void RayScene::record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit, Edges edges) {
+    if (structures_)
+        record_khr_trace(commands, device_, *structures_, triangles_, queue, hits, any_hit);
+    else
+        record_trace(commands, device_, {cubes_.cubes(), instances_, triangles_}, queue, hits,
+                     {cubes_.choice().hit, cubes_.choice().tolerance, any_hit, edges});
+}
+
+void RayScene::record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits) {
+    record_file_hits(commands, device_, instances_, triangle_ids_, hits, count, file_hits);
+}
+
+void RayScene::record_build(Commands& commands) {
+    if (structures_) return structures_->record(commands, true);
+    cubes_.record(commands, triangles_);
+    instances_.record(commands, cubes_.cubes());
 }
 
 }  // namespace peelray

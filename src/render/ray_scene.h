@@ -12,7 +12,8 @@ class RayScene {
   public:
     /// Uploads the scene in its present moment and builds its cubes; with `khr` the device's own acceleration
     /// structures instead. Throws Error where it has none.
-    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice, bool khr = false);
+    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice,
+             std::optional<StructureUpdate> khr = {});
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
@@ -21,9 +22,19 @@ class RayScene {
     void record(Commands& commands, const Buffer& rays, uint32_t count, const Buffer& file_hits, bool any_hit,
                 const CountBuffers* counting = nullptr);
 
+    /// The same in two parts: hits[i] (Hit each) for the rays of a queue, and their translation.
+    void record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit, Edges edges);
+    void record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits);
+
+    /// Records the build of what is built for every frame, and where it stands. After the submission finish_build()
+    /// tells whether everything fitted; if not, it is to be recorded again.
+    void record_build(Commands& commands);
+    bool finish_build(Commands& commands) { return structures_ || cubes_.finish(commands); }
+
     const SceneCubes& cubes() const { return cubes_; }
     /// Null: rays are traced in the cubes.
     const Structures* structures() const { return structures_.get(); }
+    const Instances& instances() const { return instances_; }
     std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }
     std::vector<uint32_t> shown() const { return shown_; }  ///< instances of each body
     const std::vector<PassTime>& build_times() const { return build_times_; }
@@ -31,7 +42,7 @@ class RayScene {
 
   private:
     void build_cubes(Commands& commands);
-    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly);
+    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly, StructureUpdate update);
 
     Device& device_;
     TriangleBuffers triangles_;

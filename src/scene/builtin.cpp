@@ -13,6 +13,7 @@ std::vector<BuiltinScene> builtin_scenes() {
             {"glass", "a glass sphere, torus and block one behind the other, and a mirror"},
             {"tree", "a tree with tens of thousands of leaves, for shadows"},
             {"leaves", "two trees whose leaves are cut out of squares by alpha masks, on a mirroring floor"},
+            {"room", "a closed room with lamps, a mirror, glass and a teapot on a table"},
             {"walker", "a figure that walks over a mirror, behind and in front of glass"},
             {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"},
             {"waves", "a pool with swimming things; waves:N for some N triangles of water (8 to 10000000)"},
@@ -26,8 +27,8 @@ uint64_t parse_count(const char* name, std::string_view digits, uint64_t most) {
     uint64_t count = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
     if (error != std::errc() || end != digits.data() + digits.size() || count < 8 || count > most)
-        fail("builtin:{}:{}: N must be a whole number from 8 to {}, as in builtin:{}:120000", name, printable(digits, 40),
-             most, name);
+        fail("builtin:{}:{}: N must be a whole number from 8 to {}, as in builtin:{}:120000", name,
+             printable(digits, 40), most, name);
     return count;
 }
 
@@ -38,6 +39,7 @@ Scene make_builtin(std::string_view name) {
     if (name == "glass") return make_glass();
     if (name == "tree") return make_tree();
     if (name == "leaves") return make_leaves();
+    if (name == "room") return make_room();
     if (name == "walker") return make_walker();
     if (name == "waves") return make_waves(32'768);
     if (name == "particles") return make_particles(3'000);

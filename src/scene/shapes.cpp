@@ -47,6 +47,10 @@ int SceneBuilder::texture(Texture texture) {
     return static_cast<int>(scene_.textures.size()) - 1;
 }
 
+void SceneBuilder::light(Light light) {
+    scene_.lights.push_back(std::move(light));
+}
+
 void SceneBuilder::camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees) {
     Camera camera;
     camera.name = "default";

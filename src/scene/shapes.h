@@ -12,6 +12,7 @@ Scene make_teapots();
 Scene make_glass();
 Scene make_tree();
 Scene make_leaves();
+Scene make_room();
 Scene make_walker();
 Scene make_blob(uint64_t triangles);
 Scene make_waves(uint64_t triangles);
@@ -32,6 +33,7 @@ class SceneBuilder {
     int tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions);
     int texture(Texture texture);
     void camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees);
+    void light(Light light);
     Scene take() { return std::move(scene_); }
 
   private:

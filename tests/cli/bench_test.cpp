@@ -219,7 +219,9 @@ TEST_F(Bench, WrongUsage) {
         {{"--tolerance", "x"}, "'x' is not a number"},
         {{"--repeat", "x"}, "--repeat"},
         {{"--size", "x"}, "is not a picture size"},
-        {{"--quick"}, "unknown option '--quick'"},
+        {{"--quick"}, "--quick excludes --paper"},
+        {{"--rays", "mirror"}, "--rays excludes --paper"},
+        {{"--plots", "plots"}, "--plots excludes --paper"},
         {{"more"}, "'more' is one argument too many"}};
     for (const auto& [words, says] : cases) {
         SCOPED_TRACE(testing::PrintToString(words));
@@ -243,8 +245,6 @@ TEST_F(Bench, ImpossibleValues) {
         SCOPED_TRACE(testing::PrintToString(words));
         expect_refused(run(small(words)), 1, says);
     }
-    expect_refused(run({"bench"}), 1, "'peelray bench --paper'");
-    expect_refused(run({"bench", "--scenes", "bunny"}), 1, "has only the paper's table yet");
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ void expect_sound(const Geometry& g, const std::string& name) {
 
 TEST(Builtin, AllAreSound) {
     for (const char* name :
-         {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:leaves", "builtin:walker", "builtin:blob:5000",
-          "builtin:waves", "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
+         {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:leaves", "builtin:room", "builtin:walker",
+          "builtin:blob:5000", "builtin:waves", "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
         const Scene scene = load_scene(name);
         EXPECT_TRUE(scene.name.starts_with(name)) << scene.name << " for " << name;
         EXPECT_EQ(scene.cameras.size(), 1u);
@@ -55,7 +55,7 @@ TEST(Builtin, AllAreSound) {
 }
 
 TEST(Builtin, ListNamesWhatCanBeMade) {
-    ASSERT_EQ(builtin_scenes().size(), 8u);
+    ASSERT_EQ(builtin_scenes().size(), 9u);
     for (const BuiltinScene& scene : builtin_scenes()) {
         EXPECT_FALSE(scene.description.empty());
         if (scene.name == "blob:N") continue;
@@ -65,7 +65,7 @@ TEST(Builtin, ListNamesWhatCanBeMade) {
 
 TEST(Builtin, GlassBodiesAreClosed) {
     int bodies = 0;
-    for (const char* name : {"glass", "walker", "particles"}) {
+    for (const char* name : {"glass", "room", "walker", "particles"}) {
         const Scene scene = make_builtin(name);
         for (const Mesh& mesh : scene.meshes)
             for (const Primitive& p : mesh.primitives) {
@@ -78,7 +78,33 @@ TEST(Builtin, GlassBodiesAreClosed) {
                 EXPECT_GT(material.thickness, 0);
             }
     }
-    EXPECT_EQ(bodies, 7);
+    EXPECT_EQ(bodies, 8);
+}
+
+TEST(Builtin, RoomIsClosedAroundItsCameraAndItsLamps) {
+    const Scene scene = make_builtin("room");
+    const Geometry geometry = flatten(scene);
+    std::vector<glm::vec3> inside = {scene.cameras.at(0).eye, scene.cameras.at(0).look};
+    ASSERT_EQ(scene.lights.size(), 2u);
+    for (const Light& light : scene.lights) inside.push_back(light.position);
+    for (const glm::vec3& p : inside) {
+        EXPECT_TRUE(glm::all(glm::greaterThan(p, geometry.lower)) && glm::all(glm::lessThan(p, geometry.upper)));
+        // Every way ends at a wall at the latest: each of the six stands across the whole room and faces it.
+        for (int axis = 0; axis < 3; axis++)
+            for (const bool upper : {false, true}) {
+                const float at = upper ? geometry.upper[axis] : geometry.lower[axis];
+                float area = 0;
+                for (const glm::uvec3& t : geometry.triangles) {
+                    const glm::vec3 a = geometry.positions[t.x], b = geometry.positions[t.y],
+                                    c = geometry.positions[t.z];
+                    if (a[axis] != at || b[axis] != at || c[axis] != at) continue;
+                    const glm::vec3 face = 0.5f * glm::cross(b - a, c - a);
+                    area += upper ? -face[axis] : face[axis];
+                }
+                const glm::vec3 size = geometry.upper - geometry.lower;
+                EXPECT_NEAR(area, size[(axis + 1) % 3] * size[(axis + 2) % 3], 1e-3f);
+            }
+    }
 }
 
 TEST(Builtin, TeapotIsNewells) {

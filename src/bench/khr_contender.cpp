@@ -1,0 +1,41 @@
+#include "bench/khr_contender.h"
+
+namespace peelray {
+namespace {
+
+std::unique_ptr<RayScene> make_scene(Device& device, const Scene& scene, const Assembly& assembly,
+                                     StructureUpdate update) {
+    CubeChoice choice;
+    choice.hit = HitTest::planar;  // of cubes that are never built
+    return std::make_unique<RayScene>(device, scene, assembly, choice, update);
+}
+
+}  // namespace
+
+KhrContender::KhrContender(Device& device, const Scene& scene, const Assembly& assembly, StructureUpdate update)
+    : GpuContender(device), source_(scene), assembly_(assembly), update_(update) {
+    device.check_ray_tracing();
+    scene_ = make_scene(device, scene, assembly, update);
+}
+
+Timing KhrContender::time_build(uint32_t runs) {
+    if (update_ == StructureUpdate::keep) return {};
+    return GpuContender::time_build(runs);
+}
+
+/// In structures that can be refitted: those that are rebuilt can not.
+Timing KhrContender::time_refit(uint32_t runs) {
+    if (update_ == StructureUpdate::keep) return {};
+    std::unique_ptr<RayScene> rebuilt = std::move(scene_);
+    scene_ = make_scene(device_, source_, assembly_, StructureUpdate::refit);
+    const Timing timing = GpuContender::time_build(runs);
+    scene_ = std::move(rebuilt);
+    return timing;
+}
+
+nlohmann::ordered_json KhrContender::memory() const {
+    const Structures::Stats stats = scene_->structures()->stats();
+    return {{"acceleration_structures", stats.bytes}, {"build_scratch", stats.scratch_bytes}};
+}
+
+}  // namespace peelray

@@ -1,0 +1,61 @@
+#include "bench/ldc_contender.h"
+
+#include <algorithm>
+
+#include "render/transforms.h"
+
+namespace peelray {
+namespace {
+
+CubeChoice rebuilt(CubeChoice choice) {
+    choice.rebuild = true;
+    return choice;
+}
+
+}  // namespace
+
+LdcContender::LdcContender(Device& device, const Scene& scene, const Assembly& assembly, CubeChoice choice)
+    : GpuContender(device), scene_(device, scene, assembly, rebuilt(choice)) {
+    const std::vector<LdcBody> bodies = scene_.download_bodies(commands_);
+    const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, world_matrices(scene));
+    if (choice.hit != HitTest::exact) voxels_.resize(assembly.shown);
+    for (size_t i = 0; i < assembly.instances.size(); i++) {
+        const Assembly::Instance& instance = assembly.instances[i];
+        const glm::mat3& m = transforms[i].linear;
+        const float scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
+        const float voxel = bodies[instance.body].grid.voxel * scale;
+        voxel_ = std::max(voxel_, voxel);
+        if (voxels_.empty()) continue;
+        const Assembly::Body& body = assembly.bodies[instance.body];
+        for (uint32_t k = body.first_triangle; k < body.first_triangle + body.triangles; k++)
+            voxels_[instance.first_id + assembly.ids[k]] = voxel;
+    }
+}
+
+Claim LdcContender::claim() const {
+    return scene_.cubes().choice().hit == HitTest::exact ? Claim::exact : Claim::voxel;
+}
+
+float LdcContender::start_offset(uint32_t triangle) const {
+    return voxels_.empty() || triangle == ~0u ? 0 : kPlanarOffset * voxels_[triangle];
+}
+
+nlohmann::ordered_json LdcContender::memory() const {
+    const Cubes& cubes = scene_.cubes().cubes();
+    nlohmann::ordered_json bytes;
+    const auto add = [&](const char* name, const Buffer& buffer) {
+        if (buffer) bytes[name] = buffer.bytes();
+    };
+    add("top_table", cubes.top_table);
+    add("node_table", cubes.node_table);
+    add("voxel_table", cubes.voxel_table);
+    add("pixel_offsets", cubes.pixel_offsets);
+    add("pixel_ranges", cubes.pixel_ranges);
+    add("samples", cubes.samples);
+    add("sample_ids", cubes.sample_ids);
+    bytes["instances"] = scene_.instances().bytes();
+    bytes["build_scratch"] = stats().scratch_bytes;
+    return bytes;
+}
+
+}  // namespace peelray

@@ -1,0 +1,41 @@
+// Layered depth cubes in a benchmark.
+#pragma once
+
+#include "bench/gpu_contender.h"
+#include "render/ray_scene.h"
+
+namespace peelray {
+
+class LdcContender : public GpuContender {
+  public:
+    /// The scene in its present moment. `choice`: every cube is rebuilt, whatever it says. Throws Error where it does
+    /// not fit the device.
+    LdcContender(Device& device, const Scene& scene, const Assembly& assembly, CubeChoice choice);
+
+    Claim claim() const override;
+    float start_offset(uint32_t triangle) const override;
+    double voxel() const override { return voxel_; }
+    nlohmann::ordered_json memory() const override;
+
+    SceneCubes::Stats stats() const { return scene_.cubes().stats(); }
+
+  protected:
+    void record_build(Commands& commands) override { scene_.record_build(commands); }
+    bool finish_build(Commands& commands) override { return scene_.finish_build(commands); }
+    void record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit) override {
+        scene_.record_hits(commands, queue, hits, any_hit, Edges::single);
+    }
+    void record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits) override {
+        scene_.record_translation(commands, hits, count, file_hits);
+    }
+
+  private:
+    RayScene scene_;
+    std::vector<float> voxels_;  ///< of the cube of each triangle (file order), world units; only of planar hits
+    float voxel_ = 0;            ///< the largest
+};
+
+/// Heights that planar hits give their rays, in voxels (surface_offset in shaders/params.h).
+inline constexpr float kPlanarOffset = 0.7f;
+
+}  // namespace peelray

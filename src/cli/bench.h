@@ -1,0 +1,21 @@
+// The parts of `peelray bench`. Each throws Error, one line, also where it was interrupted; finished rows are kept.
+#pragma once
+
+#include "cli/program.h"
+#include "gpu/device.h"
+
+namespace peelray {
+
+/// --paper: Table 1 of the paper again.
+void run_paper_bench(const BenchArguments& arguments);
+/// Rays and frames of many scenes, against rivals on the same rays.
+void run_ray_bench(const BenchArguments& arguments);
+/// --auto-check: what `auto` chooses against the best fixed choice.
+void run_auto_check(const BenchArguments& arguments);
+
+/// Throws Error if the device has no timestamps.
+void check_timestamps(const Device& device);
+/// Writes a text to a file, whole or not at all.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace peelray
