@@ -20,13 +20,37 @@ BUFFER(, 7, uvec2, blocks)
 #include "peelray/intersect.glsl"
 #include "placed.glsl"
 
-/// Pixels along a side of a tile, and tiles along a side of a block of a large triangle.
-const uint VIEW_TILE = 8u, VIEW_BLOCK = 4u;
+/// Pixels along a side of a block of a large triangle, and blocks that a workgroup looks at.
+const uint VIEW_BLOCK = 8u, VIEW_BLOCKS = 16u;
 
 /// A point relative to the eye as (x, y, w): in the picture at (x, y) / w, in [-1, 1] with y upwards.
 vec3 viewPoint(vec3 p) {
     const vec3 right = frame[0].right, up = frame[0].up;
     return vec3(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), frame[0].orthographic != 0u ? 1.0 : dot(p, frame[0].forward));
+}
+
+/// The edges' functions of the place in the picture, which are linear: their signs say the side, whether the triangle reaches behind the
+/// eye or not (Olano, Greer: Triangle Scan Conversion Using 2D Homogeneous Coordinates, 1997); `sum`: of all three, of the sign of the
+/// side that the eye sees.
+struct ViewEdges {
+    vec3 u, v, w, sum;
+    float rounding;
+};
+
+/// Of a triangle in the picture (viewPoint).
+ViewEdges viewEdges(vec3 a, vec3 b, vec3 c) {
+    const vec3 u = cross(c, b), v = cross(a, c), w = cross(b, a);
+    return ViewEdges(u, v, w, u + v + w, 4e-6 * max(dot(a, a), max(dot(b, b), dot(c, c))));
+}
+
+/// May rays through the pixels within `half_side` pixels of `middle` hit the triangle?
+bool viewTouches(ViewEdges edges, vec2 middle, float half_side) {
+    const vec2 pixel = 2.0 / vec2(frame[0].width, frame[0].height);
+    const vec3 at = vec3(middle.x * pixel.x - 1.0, 1.0 - middle.y * pixel.y, 1.0);
+    const vec4 values = vec4(dot(edges.u, at), dot(edges.v, at), dot(edges.w, at), dot(edges.sum, at));
+    const vec4 reach = half_side * (pixel.x * abs(vec4(edges.u.x, edges.v.x, edges.w.x, edges.sum.x)) +
+                                    pixel.y * abs(vec4(edges.u.y, edges.v.y, edges.w.y, edges.sum.y))) + edges.rounding;
+    return !any(lessThan(values + reach, vec4(0))) || !any(greaterThan(values - reach, vec4(0)));
 }
 
 /// Offers the triangle (relative to the eye) to a pixel: decided by the very ray that will be asked where it hits.
@@ -35,7 +59,7 @@ void viewPixel(uint number, SurfaceId surface, vec3 a, vec3 b, vec3 c, uvec2 pix
     if (frame[0].orthographic != 0u) placedTriangle(surface.instance, surface.triangle, ray.origin, a, b, c);
     float t;
     vec2 uv;
-    if ((peelrayIntersect(vec3(0), ray.direction, a, b, c, t, uv) & PEELRAY_INSIDE) == 0u || !(t >= 0.0)) return;
+    if (peelrayIntersectSheared(vec3(0), peelrayShear(ray.direction), a, b, c, false, t, uv) == PEELRAY_OUTSIDE || !(t >= 0.0)) return;
     const uint64_t key = packUint2x32(uvec2(number, floatBitsToUint(abs(t))));
     const uint at = pixel.y * frame[0].width + pixel.x;
     if (visibility[at] <= key) return;  // hidden, most likely: no atomic

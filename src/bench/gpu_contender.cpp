@@ -4,20 +4,29 @@
 
 namespace peelray {
 
-GpuContender::GpuContender(Device& device) : device_(device), commands_(device) {
+GpuContender::GpuContender(Device& device, ClockProbe& probe) : device_(device), probe_(probe), commands_(device) {
     commands_.time_passes(false);
 }
 
 Timing GpuContender::time_submissions(uint32_t runs, const std::function<void()>& record,
                                       const std::function<bool()>& finish) {
-    return time_repeatedly(runs, [&] {
+    const auto once = [&] {
         for (;;) {
             record();
             commands_.submit();
             const double ms = commands_.elapsed_ms();  // finish() may submit copies
             if (finish()) return ms;
         }
-    });
+    };
+    Timing best;
+    // What was measured at a lower clock is measured again.
+    for (int i = 0; i < 3 && (i == 0 || best.clock < 0.97); i++) {
+        probe_.warm_up();
+        Timing timing = time_repeatedly(runs, once);
+        timing.clock = probe_.clock();
+        if (i == 0 || timing.clock > best.clock) best = timing;
+    }
+    return best;
 }
 
 Timing GpuContender::time_build(uint32_t runs) {

@@ -1,6 +1,7 @@
 // A contender on the device: passes are recorded, timed by the device and their hits downloaded.
 #pragma once
 
+#include "bench/clock_probe.h"
 #include "bench/contender.h"
 #include "ldc/tracer.h"
 
@@ -14,7 +15,8 @@ class GpuContender : public RayContender {
     std::vector<FileHit> answers() override;
 
   protected:
-    explicit GpuContender(Device& device);
+    /// Both must outlive it.
+    GpuContender(Device& device, ClockProbe& probe);
 
     virtual void record_build(Commands& commands) = 0;
     /// After the submission: false if something did not fit; then it is recorded again.
@@ -27,6 +29,7 @@ class GpuContender : public RayContender {
     Timing time_submissions(uint32_t runs, const std::function<void()>& record, const std::function<bool()>& finish);
 
     Device& device_;
+    ClockProbe& probe_;
     Commands commands_;
 
   private:

@@ -25,6 +25,7 @@ nlohmann::ordered_json timing_json(const Timing& timing) {
             {"least", timing.least},
             {"most", timing.most},
             {"drift", timing.drift},
+            {"clock", timing.clock},
             {"runs", timing.runs}};
 }
 

@@ -15,6 +15,8 @@ struct Timing {
     /// The last time by the first one. No program can read the clocks of all devices: where they changed meanwhile,
     /// this is not 1.
     double drift = 1;
+    /// The device's clock afterwards by the highest seen so far (ClockProbe); 1 where it cannot be known.
+    double clock = 1;
 };
 
 /// `ms`: in the order of measurement; of none: no runs.

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "bench/clock_probe.h"
 #include "cli/bench.h"
 #include "cli/bench_scenes.h"
 #include "cli/paper_table.h"
@@ -57,6 +58,7 @@ class AutoCheck {
 
     const BenchArguments& a_;
     Device device_;
+    ClockProbe probe_{device_};
     Json rows_ = Json::array();
     std::string text_, reason_;
     size_t measured_ = 0;
@@ -91,6 +93,8 @@ void AutoCheck::time(const PictureArguments& arguments, const PreparedScene& sce
     settings.camera = scene.camera;
     settings.bounds = scene.bounds;
     settings.repeat = a_.repeat + kWarmUp + 1;
+    settings.time_passes = false;
+    probe_.warm_up();
     const RenderResult result = renderer.render(settings, [](double) { check_interrupt(); });
     std::vector<double> ms;
     for (const RenderStats::FrameTime& time : result.stats.frames) ms.push_back(time.frame_ms);

@@ -41,7 +41,7 @@ struct Way {
 class MeasuredScene {
   public:
     /// Throws Error where the scene cannot be had.
-    MeasuredScene(Device& device, const BenchSceneChoice& choice, uint32_t repeat);
+    MeasuredScene(Device& device, ClockProbe& probe, const BenchSceneChoice& choice, uint32_t repeat);
 
     uint64_t triangles() const { return scene_.triangles; }
     /// Makes the rays of the pictures that follow.
@@ -58,6 +58,7 @@ class MeasuredScene {
     RenderSettings settings_of_way(const Way& way) const;
 
     Device& device_;
+    ClockProbe& probe_;
     BenchSceneChoice choice_;
     uint32_t repeat_;
     PreparedScene scene_;
@@ -69,8 +70,9 @@ class MeasuredScene {
     RaySets sets_;
 };
 
-MeasuredScene::MeasuredScene(Device& device, const BenchSceneChoice& choice, uint32_t repeat)
+MeasuredScene::MeasuredScene(Device& device, ClockProbe& probe, const BenchSceneChoice& choice, uint32_t repeat)
     : device_(device),
+      probe_(probe),
       choice_(choice),
       repeat_(repeat),
       scene_(prepare_scene(choice_.picture)),
@@ -140,7 +142,7 @@ RenderSettings MeasuredScene::settings_of_way(const Way& way) const {
 void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     const RenderSettings settings = settings_of_way(way);
     {
-        LdcContender cubes(device_, scene_.scene, assembly_,
+        LdcContender cubes(device_, probe_, scene_.scene, assembly_,
                            choose_automatically(uint32_t(scene_.triangles), settings));
         measure(cubes, cubes.stats().resolution, row);
     }
@@ -160,17 +162,19 @@ void MeasuredScene::measure_frame(const RenderSettings& settings, RayRow& row) {
     RenderSettings repeated = settings;
     repeated.repeat = repeat_ + kFrameWarmUp + 1;  // the renderer leaves out the first itself
     repeated.time_passes = false;
+    probe_.warm_up();
     const RenderResult result = renderer_->render(repeated, [](double) { check_interrupt(); });
     std::vector<double> ms;
     for (const RenderStats::FrameTime& time : result.stats.frames) ms.push_back(time.frame_ms);
     ms.erase(ms.begin(), ms.end() - repeat_);
     row.frame = timing_of(std::move(ms));
+    row.frame.clock = probe_.clock();
 }
 
 /// `update`: of structures that are built in every frame, or never again.
 void MeasuredScene::measure_khr(StructureUpdate update, bool frame, RayRow& row) {
     {
-        KhrContender structures(device_, scene_.scene, assembly_, update);
+        KhrContender structures(device_, probe_, scene_.scene, assembly_, update);
         measure(structures, 0, row);
     }
     if (!frame) return;
@@ -219,6 +223,7 @@ class RayBench {
     const BenchArguments& a_;
     std::vector<RayKind> kinds_;
     Device device_;
+    ClockProbe probe_{device_};
     std::vector<Way> ways_, series_ways_;
     std::vector<RayRow> rows_;
     Json json_rows_ = Json::array();
@@ -322,7 +327,7 @@ void RayBench::measure_scene(const std::string& name, Progress& bar) {
         row.size = size;
         row.left_out.clear();
         try {
-            if (!scene) scene.emplace(device_, choice, a_.repeat);
+            if (!scene) scene.emplace(device_, probe_, choice, a_.repeat);
             row.triangles = scene->triangles();
             scene->look(size, kinds);
         } catch (const Interrupted&) {

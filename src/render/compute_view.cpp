@@ -8,7 +8,7 @@ namespace peelray {
 namespace {
 
 constexpr uint64_t kBlockBytes = 8;
-constexpr uint64_t kFirstBlocks = 1 << 14, kMostFirstBlocks = 1 << 20;
+constexpr uint64_t kFirstBlocks = 1 << 16, kMostFirstBlocks = 1 << 20;
 
 }  // namespace
 
