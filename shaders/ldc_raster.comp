@@ -23,7 +23,7 @@ BUFFER(readonly, 6, LdcBody, bodies)
 // Triangles that touch many blocks are cut by all threads of the workgroup.
 const uint LDC_MANY_BLOCKS = 16u;
 shared uint many_count;
-shared uint many[gl_WorkGroupSize.x];
+shared uint many[3u * gl_WorkGroupSize.x];  // of a triangle in up to three LDIs
 
 /// Queues the blocks of pixels that a large triangle touches: of those in its bounds number `first`, `first` + `step`, ...
 void queueBlocks(LdcTriangle t, ivec2 lo, ivec2 hi, uint id, uint first, uint step) {
@@ -76,41 +76,42 @@ void main() {
             }
         }
     }
+    if (gl_LocalInvocationIndex == 0u) many_count = 0u;
+    barrier();
     // Only the overlap band has triangles that several LDIs capture.
-    const uint axes = params.sampling == LDC_BAND ? 3u : 1u;
-    for (uint turn = 0u; turn < axes; turn++) {
-        if (gl_LocalInvocationIndex == 0u) many_count = 0u;
-        barrier();
-        const uint axis = axes == 1u ? ldcAxis(normal) : turn;
-        bool captured = valid && ldcCaptured(normal, axis, params.sampling);
-        LdcTriangle t;
-        ivec2 lo = ivec2(0), hi = ivec2(-1);
-        vec3 reach = vec3(0);
-        if (captured) {
-            t = ldcProject(grid, a, b, c, normal, axis);
-            reach = ldcReach(t);
-            captured = ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi);
-            const ivec2 size = hi - lo + 1;
-            if (captured && uint(size.x) * uint(size.y) > small_pixels) {
-                if (touchesMany(lo, hi))
-                    many[atomicAdd(many_count, 1u)] = id << 2u | axis;
-                else
-                    queueBlocks(t, lo, hi, id << 2u | axis, 0u, 1u);
-                captured = false;
-            }
+    const uint first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(normal), last_axis = params.sampling == LDC_BAND ? 2u : first_axis;
+    uint count = 0u, covering = 0u;
+    for (uint axis = first_axis; axis <= last_axis; axis++) {
+        if (!valid || !ldcCaptured(normal, axis, params.sampling)) continue;
+        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
+        ivec2 lo, hi;
+        if (!ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi)) continue;
+        const ivec2 size = hi - lo + 1;
+        if (uint(size.x) * uint(size.y) > small_pixels) {
+            if (touchesMany(lo, hi))
+                many[atomicAdd(many_count, 1u)] = id << 2u | axis;
+            else
+                queueBlocks(t, lo, hi, id << 2u | axis, 0u, 1u);
+            continue;
         }
-        uint count = 0u;
-        if (captured) count = emitSmall(t, reach, lo, hi, id << 2u | axis, place, false, 0u);
-        const uint position = ldcReserve(count);
-        if (count != 0u) emitSmall(t, reach, lo, hi, id << 2u | axis, place, true, position);
-        for (uint i = 0u; i < many_count; i++) {
-            const uint large = many[i];
-            const CubeGrid its_grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
-            const LdcTriangle its = ldcProjected(its_grid, large);
-            ivec2 its_lo, its_hi;
-            ldcBounds(its, uvec3(peelrayToLdi(vec3(its_grid.dims), large & 3u)).xy, its_lo, its_hi);
-            queueBlocks(its, its_lo, its_hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
-        }
-        barrier();
+        const uint emitted = emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, false, 0u);
+        if (emitted != 0u) covering |= 1u << axis;
+        count += emitted;
+    }
+    uint position = ldcReserve(count);
+    for (uint axis = first_axis; axis <= last_axis; axis++) {
+        if ((covering >> axis & 1u) == 0u) continue;
+        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
+        ivec2 lo, hi;
+        ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi);
+        position += emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, true, position);
+    }
+    for (uint i = 0u; i < many_count; i++) {
+        const uint large = many[i];
+        const CubeGrid its_grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
+        const LdcTriangle its = ldcProjected(its_grid, large);
+        ivec2 lo, hi;
+        ldcBounds(its, uvec3(peelrayToLdi(vec3(its_grid.dims), large & 3u)).xy, lo, hi);
+        queueBlocks(its, lo, hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
     }
 }

@@ -1,8 +1,8 @@
-// Rasterises the blocks of large triangles: one workgroup per block, up to sixteen pixels per thread.
+// Rasterises the blocks of large triangles: one workgroup per block, up to four pixels per thread.
 #version 460
 #include "common.glsl"
 #include "params.h"
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 layout(constant_id = 0) const bool masked = false;  // as in ldc_raster.comp
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
@@ -33,8 +33,8 @@ void main() {
     hi = min(hi, corner + int(LDC_BLOCK) - 1);
     const uint width = uint(hi.x - lo.x + 1), pixels = width * uint(hi.y - lo.y + 1);
     uint count = 0u, covered = 0u;
-    for (uint k = 0u; k < LDC_BLOCK * LDC_BLOCK / 64u; k++) {
-        const uint j = k * 64u + gl_LocalInvocationIndex;
+    for (uint k = 0u; k < LDC_BLOCK * LDC_BLOCK / gl_WorkGroupSize.x; k++) {
+        const uint j = k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
         if (j >= pixels) break;
         const ivec2 pixel = lo + ivec2(j % width, j / width);
         if (!ldcCovers(t, reach, vec2(pixel) + 0.5, params.sampling)) continue;
@@ -45,7 +45,7 @@ void main() {
     uint position = ldcReserve(count);
     for (uint k = 0u; covered >> k != 0u; k++) {
         if ((covered >> k & 1u) == 0u) continue;
-        const uint j = k * 64u + gl_LocalInvocationIndex;
+        const uint j = k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
         position += ldcEmitPixel(t, lo + ivec2(j % width, j / width), id, place, true, position);
     }
 }

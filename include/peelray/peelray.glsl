@@ -187,7 +187,6 @@ bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv,
 /// What the samples of a list are tested with: where the ray enters and leaves their cell, from the cell's centre, voxels.
 struct PeelraySegment {
     vec3 enters, leaves;
-    float uncertain;  ///< a plane whose values at both ends differ by less does not tell where in the pixel it is hit
 };
 
 /// `exact`: may the ray hit the triangle of this sample inside the cell? Conservative: the sample's plane passes between the
@@ -203,7 +202,7 @@ bool peelrayMayHit(uvec2 data, PeelraySegment segment) {
     const float f0 = dot(normal, segment.enters) - w, f1 = dot(normal, segment.leaves) - w;
     // Written so that a NaN passes.
     if (min(f0, f1) > PEELRAY_SEGMENT_SLACK * unit || max(f0, f1) < -PEELRAY_SEGMENT_SLACK * unit) return false;
-    if (!(abs(f0 - f1) > segment.uncertain * unit)) return true;
+    if (!(abs(f0 - f1) > PEELRAY_UNCERTAIN_PLACE * unit)) return true;
     const vec3 at = mix(segment.enters, segment.leaves, clamp(f0 / (f0 - f1), 0.0, 1.0));
     const vec2 pixel = x ? at.yz : (y ? at.zx : at.xy);
     const uvec2 bit = uvec2(clamp(pixel * 4.0 + 2.0, vec2(0), vec2(3)));
@@ -265,20 +264,23 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
                 const vec3 from_centre = r.o - (vec3(at) + 0.5);
                 segment.enters = from_centre + s * r.d;
                 segment.leaves = from_centre + min(s_out, r.s_best) * r.d;
-                segment.uncertain = PEELRAY_UNCERTAIN_PLACE;
                 // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
                 do {
                     uint candidate = PEELRAY_MISS;
                     while (more && candidate == PEELRAY_MISS) {
                         PEELRAY_COUNT(samples);
                         const uvec2 data = PEELRAY_SAMPLE(j);
-                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
                         more = (data.y >> 30u & 1u) == 0u;
-                        j++;
-                        if (peelrayMayHit(data, segment) && id != skip) {
-                            if (PEELRAY_DEFER) candidate = id;
-                            else if (peelrayTestTriangle(place, ray, id, shear, r, hit)) found_one = true;
+                        if (peelrayMayHit(data, segment)) {
+                            const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                            if (id != skip) {
+                                if (PEELRAY_DEFER)
+                                    candidate = id;
+                                else if (peelrayTestTriangle(place, ray, id, shear, r, hit))
+                                    found_one = true;
+                            }
                         }
+                        j++;
                     }
                     if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, shear, r, hit)) found_one = true;
                 } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));

@@ -14,12 +14,17 @@ double allowed_share(Claim claim, uint32_t resolution) {
     return 0.003 * 1024 / resolution;
 }
 
+double beside_share(Claim claim, uint32_t resolution) {
+    return claim == Claim::voxel ? 0.02 * 1024 / resolution : 1e-3;
+}
+
 Judgement judge(const Oracle& oracle, const Geometry& geometry, const RayContender& contender, uint32_t resolution,
                 std::span<const Ray> rays, std::span<const FileHit> hits, bool any_hit, size_t most) {
     const Claim claim = contender.claim();
     const double voxel = contender.voxel();
     Judgement out;
     out.allowed = allowed_share(claim, resolution);
+    out.beside = beside_share(claim, resolution);
     out.checked = std::min(rays.size(), most);
     std::atomic<uint64_t> wrong{0}, second_look{0}, counted{0};
     parallel_for(out.checked, 64, [&](size_t i) {

@@ -72,11 +72,13 @@ TEST_F(JudgeTest, RightAnswersPassAndOneWrongExactAnswerDoesNot) {
         EXPECT_EQ(judgement.checked, mirror_.size());
         EXPECT_TRUE(judgement.passes());
     }
-    const auto some = std::find_if(hits.begin(), hits.end(), [](const FileHit& hit) { return hit.triangle != ~0u; });
+    const auto some = std::find_if(hits.begin(), hits.end(), [](const FileHit& hit) { return hit.triangle != ~0u && hit.t > 0.3f; });
     ASSERT_NE(some, hits.end());
-    some->t *= 1.01f;
+    const float right_t = some->t;
+    some->t = 20;
     EXPECT_EQ(judged(Claim::exact, hits).wrong, 1u);
     EXPECT_FALSE(judged(Claim::exact, hits).passes());
+    some->t = right_t + 0.01f;
     EXPECT_TRUE(judged(Claim::voxel, hits, 0.1).passes());
 }
 
@@ -127,8 +129,10 @@ TEST_F(JudgeTest, ShadowRaysAskOnlyWhetherSomethingIsInTheWay) {
         hit.triangle = hit.triangle == ~0u ? 0 : ~0u;
     }
     EXPECT_GT(blocked, 0u);
-    EXPECT_GT(judge(oracle_, geometry_, exact, 0, shadow_, hits, true).wrong, shadow_.size() * 9 / 10);
-    EXPECT_GT(judge(oracle_, geometry_, voxel, 1024, shadow_, hits, true).wrong, shadow_.size() * 8 / 10);
+    // A ray that starts a little lower meets its own surface: many of the others need a second look, which is too many as well.
+    EXPECT_GT(judge(oracle_, geometry_, exact, 0, shadow_, hits, true).wrong, blocked / 2);
+    EXPECT_FALSE(judge(oracle_, geometry_, exact, 0, shadow_, hits, true).passes());
+    EXPECT_FALSE(judge(oracle_, geometry_, voxel, 1024, shadow_, hits, true).passes());
 }
 
 TEST_F(JudgeTest, EmbreeAnswersRightBySingleRaysAndPackets) {

@@ -29,7 +29,7 @@ TEST_P(KhrOnScene, HitsAreThoseOfTheCubesAndTheOracle) {
     const AlphaTest alpha(scene, geometry);
     const Oracle oracle(geometry, alpha);
     const Assembly assembly = assemble(scene, motion_of(scene, ""));
-    RayScene khr(device(), scene, assembly, {}, true), ldc(device(), scene, assembly, {});
+    RayScene khr(device(), scene, assembly, {}, StructureUpdate::keep), ldc(device(), scene, assembly, {});
     EXPECT_EQ(khr.structures()->stats().bodies, assembly.bodies.size());
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel}) {
         test::RaySource source(geometry, 77);
