@@ -10,12 +10,16 @@ BUFFER(readonly, 2, PeelrayCounts, light_costs)
 BUFFER(readonly, 3, PathNode, nodes)
 BUFFER(readonly, 4, PathBranches, branches)
 BUFFER(readonly, 5, uint, queue)
+BUFFER(readonly, 6, Frame, frame)
+#include "camera.glsl"
 #include "cost_sums.glsl"
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    // The camera's level has as many entries as the band has pixels; the others are counted.
-    if (queue[QUEUE_OVERFLOW] != 0u || i >= (params.level == 0u ? params.capacity : min(params.capacity, queue[params.level]))) return;
+    if (queue[QUEUE_OVERFLOW] != 0u || i >= params.capacity) return;
+    // The camera's level has an entry for each pixel of whole tiles, some beside the picture; the others are counted.
+    const uvec2 pixel = recordPixel(i, params.first_row);
+    if (params.level == 0u ? pixel.x >= frame[0].width || pixel.y >= frame[0].height : i >= queue[params.level]) return;
     const PathNode node = nodes[i];
     PeelrayCounts sum = costs[i];
     for (uint k = 0u; k < (node.flags & NODE_LIGHTS); k++) sum = costSum(sum, light_costs[node.first_light + k]);

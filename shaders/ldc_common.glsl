@@ -15,7 +15,7 @@ const uint LDC_BLOCK = 32;
 // The overlap band: a triangle also goes into a second LDI if its normal's component there is at least
 // this share of the largest. Without it 2-4 % of planar hits leak, with it 0.1-0.3 %.
 const float LDC_OVERLAP = 0.8;
-// Lists longer than this are sorted by a workgroup of their own.
+// By pixel lists longer than this are sorted by a workgroup of their own.
 const uint LDC_LONG_LIST = 256;
 
 /// A triangle in one LDI: corners (u, v, w) in voxel units, counter-clockwise in (u, v), and the slopes of its plane.
@@ -182,15 +182,15 @@ uint ldcGrowBox(uvec2 mask, uint index) {
     return first | last << 6u;
 }
 
-/// The sample of a triangle in a voxel, as the traversal reads it (see peelrayTrace); the `last` bit is still 0.
+/// The sample of a triangle in a voxel, as the traversal reads it (see peelrayMayHit); the `last` bit is still 0.
 uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling) {
     const vec3 corner = peelrayToLdi(vec3(voxel), axis);
     const vec2 centre = corner.xy + 0.5;
     const float w = ldcDepth(t, centre) - corner.z;
     uint coverage = 0u;
     if (sampling == LDC_CONSERVATIVE) {
-        // Conservative: a cell of the 4x4 grid counts when the triangle comes within 0.03 pixels of it, which is more than
-        // the traversal's position slack.
+        // Conservative: a cell of the 4x4 grid counts when the triangle comes within 0.03 pixels of it: the traversal asks for the
+        // cell only where it knows the place so well (PEELRAY_UNCERTAIN_PLACE).
         const float half_cell = 0.125 + 0.03;
         const vec3 reach = ldcReach(t) * half_cell;
         const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - half_cell, high = max(t.a.xy, max(t.b.xy, t.c.xy)) + half_cell;

@@ -18,7 +18,7 @@
 //   PEELRAY_PRECISE   a bool: true decides hits within rounding of an edge in doubled precision. Without it such a hit is
 //                     decided in single precision, watertight all the same: no ray slips between two triangles of a body, but
 //                     one in some ten thousand that graze a surface edge-on may see the other of them.
-//   PEELRAY_DEFER     a constant bool: true tests triangles after the samples of their list and not among them, which is the faster
+//   PEELRAY_DEFER     a constant bool: true tests triangles after the samples up to the next candidate and not among them, which is the faster
 //                     one where every lane runs every branch (software devices)
 //   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
 //                     other samples are made where there is a surface)
@@ -267,7 +267,7 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
                 // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
                 do {
                     uint candidate = PEELRAY_MISS;
-                    while (more && candidate == PEELRAY_MISS) {
+                    while (more && candidate == PEELRAY_MISS && !(options.any_hit && found_one)) {
                         PEELRAY_COUNT(samples);
                         const uvec2 data = PEELRAY_SAMPLE(j);
                         more = (data.y >> 30u & 1u) == 0u;

@@ -2,15 +2,15 @@
 #ifndef PEELRAY_SAMPLE_GLSL
 #define PEELRAY_SAMPLE_GLSL
 
-/// How far a sample may lie off its own voxel and still be looked at, in voxels: rounding of coordinates up to 2048 voxels
+/// By pixel: how far a sample may lie off its own voxel and still be looked at, in voxels: rounding of coordinates up to 2048 voxels
 /// and the quantised plane (w: 4e-5, slopes: 8e-5), see docs/data.md.
 const float PEELRAY_POSITION_SLACK = 2e-3;
 const float PEELRAY_PLANE_SLACK = 5e-4;
 /// Of the distance to a sample's plane at the ends of a ray's way through a voxel: both of the above, voxels.
 const float PEELRAY_SEGMENT_SLACK = 3e-3;
-/// A plane's values at both ends of a ray's way through a voxel must differ by this for the place in between where it is hit to be
-/// known to 0.03 pixels, by which the coverage is wider than the triangle.
-const float PEELRAY_UNCERTAIN_PLACE = 0.03;
+/// A plane's values at both ends of a ray's way through a voxel, off by PEELRAY_SEGMENT_SLACK at most, must differ by this for the place
+/// in between where it is hit to be known to 0.03 pixels, by which the coverage is wider than the triangle.
+const float PEELRAY_UNCERTAIN_PLACE = 0.1;
 /// Slopes are stored in [-this, this]: beyond 1 only in the overlap band of `planar` (1 / LDC_OVERLAP).
 const float PEELRAY_SLOPE_RANGE = 1.25;
 /// Half-width of a sample's footprint for `planar` hits, in pixels.

@@ -64,7 +64,7 @@ inline uint64_t left_of(uint64_t most, uint64_t used) {
 /// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; tells whether it did.
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most);
 
-/// The two passes of the prefix sum over `sums` (uvec2 each): as many as counter number `counter` says.
+/// The three passes of the prefix sum over `sums` (uvec2 each): as many as counter number `counter` says.
 void record_scan(Commands& commands, const BuildState& state, uint32_t capacity, uint32_t counter, const Buffer& sums,
                  const Buffer& block_sums);
 

@@ -59,7 +59,8 @@ void CostCounter::record_sums(Commands& commands, PathQueues& queues, const Buff
                                                {"light_costs", light_costs_},
                                                {"nodes", level.nodes},
                                                {"branches", level.branches},
-                                               {"queue", queues.counters()}};
+                                               {"queue", queues.counters()},
+                                               {"frame", frame}};
         commands.run(device_.pass("gather_costs"), bindings, params[i], groups_for(params[i].capacity, 64));
     }
     commands.run(device_.pass("accumulate_costs"),
