@@ -322,7 +322,7 @@ class Assembler {
 
 uint32_t serving_resolution(uint64_t triangles, bool rebuilt) {
     // Measured on meshes of 7 thousand to 10 million triangles: docs/performance.md.
-    const double voxels = (rebuilt ? 3.75 : 6) * std::cbrt(double(triangles));
+    const double voxels = (rebuilt ? 4.25 : 6) * std::cbrt(double(triangles));
     return uint32_t(std::clamp(std::ceil(voxels / 16), 1.0, 64.0)) * 16;
 }
 
