@@ -172,17 +172,16 @@ TEST_F(Usage, CubeMapsTraceNoRays) {
 }
 
 TEST_F(Usage, HelpMentionsEveryOption) {
-    const Words tracing = {"--builder", "--hit",      "--tolerance", "--traversal", "--block",
-                           "--routing", "--depth",    "--batch",     "--ldc",       "--tracer",
-                           "--device",  "--validate", "--stats",     "--visibility"};
+    const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing", "--depth",
+                           "--batch",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
     std::vector<std::pair<Words, Words>> pages = {
         {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
-         {"SCENE",          "-o,",       "--size",     "--eye",        "--look",     "--up",      "--fov",
-          "--camera",       "--env",     "--sky",      "--background", "--exposure", "--tonemap", "--bounces",
-          "--spp",          "--effects", "--time",     "--animation",  "--frames",   "--fps",     "--aov",
-          "--turntable",    "--shard",   "--resume",   "--material",   "--floor",    "--repeat",  "builtin:teapots",
-          "builtin:blob:N", "1280x1024", "--counters", "cost_steps"}},
+         {"SCENE",          "-o,",       "--size",     "--eye",        "--look",      "--up",      "--fov",
+          "--camera",       "--env",     "--sky",      "--background", "--exposure",  "--tonemap", "--bounces",
+          "--spp",          "--effects", "--time",     "--animation",  "--frames",    "--fps",     "--aov",
+          "--turntable",    "--shard",   "--resume",   "--material",   "--floor",     "--repeat",  "builtin:teapots",
+          "builtin:blob:N", "1280x1024", "--counters", "cost_steps",   "--visibility"}},
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat", "--counters"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},

@@ -141,7 +141,7 @@ TEST_F(VisibilityTest, ManyLargeTrianglesFindRoom) {
         const RenderResult picture = render(stage, black, settings);
         settings.visibility = Visibility::raster;  // the build may be done again as well
         EXPECT_EQ(picture.stats.redone > render(stage, black, settings).stats.redone, first == 0)
-            << "40 triangles in 484 blocks each, room for 16384";
+            << "40 triangles in 7744 blocks each, room for 65536";
         Tally result;
         for (const glm::vec4& pixel : picture.radiance)
             result.add(pixel == glm::vec4(1, 0, 0, 1), [] { return "another sheet"; });
