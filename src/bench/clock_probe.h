@@ -1,5 +1,5 @@
-// A GPU that was idle lowers its clock, and takes a while to raise it: what is measured then is the clock. The host cannot read it,
-// but it can time work of a fixed number of cycles.
+// A GPU that was idle lowers its clock, and takes a while to raise it: what is measured then is the clock. The host
+// cannot read it, but it can time work of a fixed number of cycles.
 #pragma once
 
 #include "gpu/commands.h"

@@ -15,7 +15,7 @@ struct Judgement {
     uint64_t second_look = 0;  ///< right for a ray beside it only
     double allowed = 0;        ///< share of `counted` that may be wrong
 
-    double beside = 0;         ///< share of `counted` that may be right for a ray beside it only
+    double beside = 0;  ///< share of `counted` that may be right for a ray beside it only
 
     bool passes() const {
         return double(wrong) <= allowed * double(counted) && double(second_look) <= beside * double(counted);
@@ -32,8 +32,8 @@ struct Judgement {
 Judgement judge(const Oracle& oracle, const Geometry& geometry, const RayContender& contender, uint32_t resolution,
                 std::span<const Ray> rays, std::span<const FileHit> hits, bool any_hit, size_t most = 20'000);
 
-/// The largest share of answers that may be right for a ray beside theirs only: 0.1 %, of Claim::voxel 2 % at 1024 voxels and
-/// as much more as the voxels are larger.
+/// The largest share of answers that may be right for a ray beside theirs only: 0.1 %, of Claim::voxel 2 % at 1024
+/// voxels and as much more as the voxels are larger.
 double beside_share(Claim claim, uint32_t resolution);
 
 /// The largest share of wrong answers that a claim allows.

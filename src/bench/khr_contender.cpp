@@ -12,7 +12,8 @@ std::unique_ptr<RayScene> make_scene(Device& device, const Scene& scene, const A
 
 }  // namespace
 
-KhrContender::KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly, StructureUpdate update)
+KhrContender::KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
+                           StructureUpdate update)
     : GpuContender(device, probe), source_(scene), assembly_(assembly), update_(update) {
     device.check_ray_tracing();
     scene_ = make_scene(device, scene, assembly, update);

@@ -10,7 +10,8 @@ class KhrContender : public GpuContender {
   public:
     /// The scene in its present moment. `update`: how its structures are built, and whether they are at all once they
     /// stand (StructureUpdate::keep). Throws Error where the device has no ray tracing or the scene does not fit it.
-    KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly, StructureUpdate update);
+    KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
+                 StructureUpdate update);
 
     Claim claim() const override { return Claim::single; }
     Timing time_build(uint32_t runs) override;

@@ -14,7 +14,8 @@ CubeChoice rebuilt(CubeChoice choice) {
 
 }  // namespace
 
-LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly, CubeChoice choice)
+LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
+                           CubeChoice choice)
     : GpuContender(device, probe), scene_(device, scene, assembly, rebuilt(choice)) {
     const std::vector<LdcBody> bodies = scene_.download_bodies(commands_);
     const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, world_matrices(scene));

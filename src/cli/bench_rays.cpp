@@ -228,6 +228,7 @@ class RayBench {
     std::vector<RayRow> rows_;
     Json json_rows_ = Json::array();
     size_t rows_in_all_ = 0, measured_ = 0;
+    bool ended_ = false;  ///< the text has its foot
     std::string text_, reason_;
 };
 
@@ -267,7 +268,7 @@ void RayBench::write(bool complete) {
         json["rows"] = json_rows_;
         write_json(a_.output, json);
     }
-    if (!a_.markdown.empty()) write_text(a_.markdown, text_ + (complete ? "" : ray_table_foot()));
+    if (!a_.markdown.empty()) write_text(a_.markdown, text_ + (ended_ ? "" : ray_table_foot()));
 }
 
 /// Measures a row; what cannot be done is left out with the reason. What there is goes to the files at once.
@@ -358,6 +359,7 @@ void RayBench::measure_scene(const std::string& name, Progress& bar) {
 void RayBench::end(bool complete) {
     say(ray_table_foot());
     say(ratio_table(rows_, kinds_));
+    ended_ = true;
     write(complete);
     if (!a_.plots.empty()) write_plots(a_.plots, rows_);
 }

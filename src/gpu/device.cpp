@@ -66,8 +66,7 @@ DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatur
         VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
     features.fragment_subgroups = (subgroups.supportedStages & VK_SHADER_STAGE_FRAGMENT_BIT) &&
                                   (subgroups.supportedOperations & wanted) == wanted;
-    features.executable_properties =
-        extension_available(device, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    features.executable_properties = extension_available(device, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     if (has_conservative && conservative.degenerateTrianglesRasterized) {
         const float most = conservative.maxExtraPrimitiveOverestimationSize,
                     step = conservative.extraPrimitiveOverestimationSizeGranularity;

@@ -42,11 +42,11 @@ std::vector<DeviceInfo> list_devices();
 /// What a device may offer beyond what all passes need; on where it is there.
 struct DeviceFeatures {
     bool geometry_shader = false, tessellation_shader = false;
-    bool fragment_stores = false;     ///< fragment shaders write buffers, with atomics
-    bool fragment_subgroups = false;  ///< subgroup arithmetic in fragment shaders
-    bool first_instance = false;      ///< indirect draws count instances from any number
+    bool fragment_stores = false;        ///< fragment shaders write buffers, with atomics
+    bool fragment_subgroups = false;     ///< subgroup arithmetic in fragment shaders
+    bool first_instance = false;         ///< indirect draws count instances from any number
     bool executable_properties = false;  ///< Pass::statistics() tells something
-    bool int64_atomics = false;       ///< 64-bit integers, and atomics on them in buffers
+    bool int64_atomics = false;          ///< 64-bit integers, and atomics on them in buffers
     /// VK_EXT_conservative_rasterization that grows triangles by this many pixels more than it must, however thin they
     /// are; 0: not offered.
     float overestimation = 0;

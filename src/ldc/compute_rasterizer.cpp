@@ -19,9 +19,12 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
     Device& device = state.device;
     const LdcParams& p = state.params;
     const bool masked = state.tests_alpha(triangles);
-    const Binding geometry[] = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
-                                {"counters", state.counters},       {"node_masks", state.node_masks},
-                                {"fragments", state.fragments},     {"bodies", state.cubes.body_table},
+    const Binding geometry[] = {{"positions", triangles.positions},
+                                {"triangles", triangles.triangles},
+                                {"counters", state.counters},
+                                {"node_masks", state.node_masks},
+                                {"fragments", state.fragments},
+                                {"bodies", state.cubes.body_table},
                                 {"blocks", blocks_}};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
     commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles)}), bindings, p,

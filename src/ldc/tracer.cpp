@@ -59,8 +59,8 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                        queue.counting != nullptr};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
     if (!four)
-        for (const uint32_t c : {shader_constant(layout.batch), instance_constant(scene.instances),
-                                 uint32_t(device.immediate)})
+        for (const uint32_t c :
+             {shader_constant(layout.batch), instance_constant(scene.instances), uint32_t(device.immediate)})
             constants.push_back(c);
     const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
     TraceParams p{};

@@ -33,8 +33,8 @@ void VoxelOrder::clear(Commands& commands, const BuildState& state) {
     commands.fill(voxel_counts_, 0, 0, uint64_t(state.params.node_capacity) * 256);
 }
 
-/// The sums for the boxes have nothing to do with the lists: they are recorded between the lists' passes, where the GPU has
-/// room for both.
+/// The sums for the boxes have nothing to do with the lists: they are recorded between the lists' passes, where the GPU
+/// has room for both.
 void VoxelOrder::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     record_nodes(commands, state);
     record_sums(commands, state, 0);
@@ -104,7 +104,8 @@ void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32
                           p, state.groups, (LDC_GROUPS_LINES + axis) * 12);
 }
 
-// A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three stages.
+// A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three
+// stages.
 bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
     LdcParams& p = state.params;
     const uint64_t most = state.most();
@@ -119,8 +120,7 @@ bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
 
 uint64_t VoxelOrder::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&top_cells_, &node_cells_, &voxel_counts_, &occupancy_sums_})
-        bytes += buffer->bytes();
+    for (const Buffer* buffer : {&top_cells_, &node_cells_, &voxel_counts_, &occupancy_sums_}) bytes += buffer->bytes();
     return bytes;
 }
 

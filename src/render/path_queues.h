@@ -50,7 +50,8 @@ class PathQueues {
     const Buffer& counters() const { return counters_; }
     /// Where in the counters the workgroups of a level are, or those of QUEUE_GROUPS_*.
     static uint64_t groups_offset(uint32_t level) { return (QUEUE_GROUPS + 3ull * level) * 4; }
-    /// Where in them the number of rays of a level is, or of QUEUE_GROUPS_LIGHT, for launching as many: uvec3(count, 1, 1).
+    /// Where in them the number of rays of a level is, or of QUEUE_GROUPS_LIGHT, for launching as many: uvec3(count, 1,
+    /// 1).
     static uint64_t launch_offset(uint32_t level) { return (QUEUE_LAUNCHES + 3ull * level) * 4; }
     const Buffer& readback() const { return readback_; }
     /// A counter (QUEUE_*) of the last finished band.

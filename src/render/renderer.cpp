@@ -380,9 +380,9 @@ void Renderer::Impl::record_shadows_khr() {
                                                             {"shadow_skip", lights.skip},
                                                             {"shadow_light", lights.light},
                                                             {"queue", queues.counters()}});
-    const RayPass& pass = khr_pass(device, scene.has_glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
-                                   scene.has_glass ? KhrRays::nearest : KhrRays::occluded,
-                                   scene.triangles.masks != nullptr, 0);
+    const RayPass& pass =
+        khr_pass(device, scene.has_glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
+                 scene.has_glass ? KhrRays::nearest : KhrRays::occluded, scene.triangles.masks != nullptr, 0);
     const RayQueue queue{lights.rays,
                          &lights.skip,
                          lights.capacity,
@@ -418,8 +418,8 @@ void Renderer::Impl::record_shadows() {
     const Pass& pass =
         device.pass(scene.has_glass ? "trace_shadow_glass" : "trace_shadow",
                     {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
-                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances), device.immediate,
-                     counter != nullptr});
+                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances),
+                     device.immediate, counter != nullptr});
     std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
     commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }

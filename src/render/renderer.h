@@ -76,9 +76,9 @@ struct RenderStats {
     CubeMaps::Stats maps;
     Structures::Stats structures;                       ///< of `khr`
     StructureUpdate update = StructureUpdate::rebuild;  ///< of those of them that are not kept
-    bool counted = false;  ///< with RenderSettings::counters
-    AllKindCosts costs;    ///< of the last frame
-    uint32_t redone = 0;   ///< how often something did not fit and was done again
+    bool counted = false;                               ///< with RenderSettings::counters
+    AllKindCosts costs;                                 ///< of the last frame
+    uint32_t redone = 0;                                ///< how often something did not fit and was done again
 };
 
 struct RenderResult : Picture {

@@ -15,8 +15,8 @@ namespace {
 
 /// A mesh that several nodes show is worth a cube of its own from here on; smaller ones are copied.
 constexpr uint64_t kSharedMesh = 500, kSharedTriangles = 20'000;
-/// Rays are taken into an instance's space in single precision: of a transform that squeezes a cube to less than this share of
-/// the cube of its longest edge, too little would be left.
+/// Rays are taken into an instance's space in single precision: of a transform that squeezes a cube to less than this
+/// share of the cube of its longest edge, too little would be left.
 constexpr double kLeastVolume = 1e-3;
 
 /// A primitive of a node.
@@ -88,9 +88,9 @@ class Assembler {
         for (size_t i = 0; i < scene_.nodes.size(); i++) {
             const Node& node = scene_.nodes[i];
             const auto parent = size_t(node.parent);
-            still_[i] = node.parent < 0 ? Still{-1, false, node.local}
-                                        : Still{still_[parent].anchor, still_[parent].scaled,
-                                                still_[parent].offset * node.local};
+            still_[i] = node.parent < 0
+                            ? Still{-1, false, node.local}
+                            : Still{still_[parent].anchor, still_[parent].scaled, still_[parent].offset * node.local};
             if (motion_.moves[i]) still_[i] = {int(i), still_[i].scaled || motion_.scales[i], glm::mat4(1)};
             // What stands in the world needs no detour.
             if (still_[i].anchor < 0) still_[i].offset = worlds_[i];
@@ -129,7 +129,8 @@ class Assembler {
         if (!primitive.joints.empty() && node.skin >= 0) {
             const std::vector<int>& joints = scene_.skins[size_t(node.skin)].joints;
             const auto moves = [&](int joint) { return still_[size_t(joint)].anchor >= 0; };
-            return std::any_of(joints.begin(), joints.end(), moves) || (moves(place.node) && has_free_vertex(primitive));
+            return std::any_of(joints.begin(), joints.end(), moves) ||
+                   (moves(place.node) && has_free_vertex(primitive));
         }
         // A scale that changes is no rigid motion, and may leave nothing to take rays into.
         const Still& still = still_[size_t(place.node)];
@@ -310,8 +311,8 @@ class Assembler {
     std::vector<std::vector<uint32_t>> first_ids_;
     std::vector<uint32_t> objects_;
     bool has_colors_ = false;
-    std::set<int> generated_;  ///< nodes that are placed by passes of their own
-    std::vector<int> waters_;  ///< nodes of Scene::generated.waters
+    std::set<int> generated_;                  ///< nodes that are placed by passes of their own
+    std::vector<int> waters_;                  ///< nodes of Scene::generated.waters
     std::map<int, std::vector<Place>> fixed_;  ///< by anchor
     std::map<int, std::vector<int>> shared_;   ///< nodes by mesh
     std::map<std::pair<int, int>, std::vector<Place>> deforming_;

@@ -8,8 +8,8 @@
 namespace peelray {
 namespace {
 
-/// Costs relative to each other: of a ray's start in a cube whose box it meets, of a look at one sample in the lists that it
-/// meets near a surface, and of finding out which of two boxes it meets.
+/// Costs relative to each other: of a ray's start in a cube whose box it meets, of a look at one sample in the lists
+/// that it meets near a surface, and of finding out which of two boxes it meets.
 constexpr double kStart = 4, kSample = 2, kBoxes = 1;
 /// Voxels along a cube's longest side, by the cube root of its triangles, where such costs were measured.
 constexpr double kVoxels = 6;
@@ -38,8 +38,8 @@ class Extent {
         by_edge2_ += weight / (edge * edge);
     }
 
-    /// Of all rays that are after its parts, in one cube. Near a part's surface a ray meets voxels with the triangles that
-    /// touch them: (1 + h / e)² of edge length e at a voxel's edge h.
+    /// Of all rays that are after its parts, in one cube. Near a part's surface a ray meets voxels with the triangles
+    /// that touch them: (1 + h / e)² of edge length e at a voxel's edge h.
     double cost() const {
         const glm::vec3 size = upper_ - lower_;
         const double h = std::max({size.x, size.y, size.z}) / (kVoxels * std::cbrt(double(triangles_)));
@@ -71,7 +71,8 @@ class Grouping {
             triangles += double(part.triangles);
         }
         for (const Part& part : parts)
-            weights_.push_back(0.5 * half_area(part.lower, part.upper) / area + 0.5 * double(part.triangles) / triangles);
+            weights_.push_back(0.5 * half_area(part.lower, part.upper) / area +
+                               0.5 * double(part.triangles) / triangles);
     }
 
     struct Result {

@@ -72,7 +72,8 @@ TEST_F(JudgeTest, RightAnswersPassAndOneWrongExactAnswerDoesNot) {
         EXPECT_EQ(judgement.checked, mirror_.size());
         EXPECT_TRUE(judgement.passes());
     }
-    const auto some = std::find_if(hits.begin(), hits.end(), [](const FileHit& hit) { return hit.triangle != ~0u && hit.t > 0.3f; });
+    const auto some =
+        std::find_if(hits.begin(), hits.end(), [](const FileHit& hit) { return hit.triangle != ~0u && hit.t > 0.3f; });
     ASSERT_NE(some, hits.end());
     const float right_t = some->t;
     some->t = 20;
@@ -129,7 +130,8 @@ TEST_F(JudgeTest, ShadowRaysAskOnlyWhetherSomethingIsInTheWay) {
         hit.triangle = hit.triangle == ~0u ? 0 : ~0u;
     }
     EXPECT_GT(blocked, 0u);
-    // A ray that starts a little lower meets its own surface: many of the others need a second look, which is too many as well.
+    // A ray that starts a little lower meets its own surface: many of the others need a second look, which is too many
+    // as well.
     EXPECT_GT(judge(oracle_, geometry_, exact, 0, shadow_, hits, true).wrong, blocked / 2);
     EXPECT_FALSE(judge(oracle_, geometry_, exact, 0, shadow_, hits, true).passes());
     EXPECT_FALSE(judge(oracle_, geometry_, voxel, 1024, shadow_, hits, true).passes());

@@ -10,7 +10,8 @@
 
 namespace peelray::test {
 
-/// What the tables hold. Nodes, lists and the samples of a list lie in the order in which the GPU happened to make them.
+/// What the tables hold. Nodes, lists and the samples of a list lie in the order in which the GPU happened to make
+/// them.
 struct Tables {
     std::vector<glm::uvec2> top, samples;
     std::vector<uint32_t> node, voxel, ids;

@@ -97,7 +97,8 @@ TEST(Builtin, RoomIsClosedAroundItsCameraAndItsLamps) {
                 for (const glm::uvec3& t : geometry.triangles) {
                     const glm::vec3 a = geometry.positions[t.x], b = geometry.positions[t.y],
                                     c = geometry.positions[t.z];
-                    if (std::max({std::abs(a[axis] - at), std::abs(b[axis] - at), std::abs(c[axis] - at)}) > 1e-5f) continue;
+                    if (std::max({std::abs(a[axis] - at), std::abs(b[axis] - at), std::abs(c[axis] - at)}) > 1e-5f)
+                        continue;
                     const glm::vec3 face = 0.5f * glm::cross(b - a, c - a);
                     area += upper ? -face[axis] : face[axis];
                 }
