@@ -219,9 +219,9 @@ TEST_F(Bench, WrongUsage) {
         {{"--tolerance", "x"}, "'x' is not a number"},
         {{"--repeat", "x"}, "--repeat"},
         {{"--size", "x"}, "is not a picture size"},
-        {{"--quick"}, "--quick excludes --paper"},
-        {{"--rays", "mirror"}, "--rays excludes --paper"},
-        {{"--plots", "plots"}, "--plots excludes --paper"},
+        {{"--quick"}, "--paper excludes --quick"},
+        {{"--rays", "mirror"}, "--paper excludes --rays"},
+        {{"--plots", "plots"}, "--paper excludes --plots"},
         {{"more"}, "'more' is one argument too many"}};
     for (const auto& [words, says] : cases) {
         SCOPED_TRACE(testing::PrintToString(words));
