@@ -271,19 +271,27 @@ void RayBench::write(bool complete) {
     if (!a_.markdown.empty()) write_text(a_.markdown, text_ + (ended_ ? "" : ray_table_foot()));
 }
 
+/// Does a part of the work; why it cannot be done, empty if it was. Throws Interrupted.
+std::string reason_against(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const Error& error) {
+        return error.what();
+    } catch (const std::bad_alloc&) {
+        return "out of memory: the scene or its rays are too large for this machine";
+    }
+    return "";
+}
+
 /// Measures a row; what cannot be done is left out with the reason. What there is goes to the files at once.
 void RayBench::add(RayRow row, const std::function<void(RayRow&)>& measure, Progress& bar) {
     check_interrupt();
-    if (row.left_out.empty()) try {
-            measure(row);
-            measured_++;
-        } catch (const Interrupted&) {
-            throw;
-        } catch (const Error& error) {
-            row.left_out = error.what();
-        } catch (const std::bad_alloc&) {
-            row.left_out = "out of memory: the scene or its rays are too large for this machine";
-        }
+    if (row.left_out.empty()) {
+        row.left_out = reason_against([&] { measure(row); });
+        if (row.left_out.empty()) measured_++;
+    }
     device_.check_validation();
     if (reason_.empty()) reason_ = row.left_out;
     json_rows_.push_back(ray_row_json(row));
@@ -326,18 +334,11 @@ void RayBench::measure_scene(const std::string& name, Progress& bar) {
     std::optional<MeasuredScene> scene;
     const auto look = [&](const glm::uvec2& size, const std::vector<RayKind>& kinds) {
         row.size = size;
-        row.left_out.clear();
-        try {
+        row.left_out = reason_against([&] {
             if (!scene) scene.emplace(device_, probe_, choice, a_.repeat);
             row.triangles = scene->triangles();
             scene->look(size, kinds);
-        } catch (const Interrupted&) {
-            throw;
-        } catch (const Error& error) {
-            row.left_out = error.what();
-        } catch (const std::bad_alloc&) {
-            row.left_out = "out of memory: the scene or its rays are too large for this machine";
-        }
+        });
         return row.left_out.empty();
     };
     const auto measure = [&](const std::vector<Way>& ways) {

@@ -225,6 +225,32 @@ void Commands::check_params(const PassBase& pass, size_t bytes) {
              pass.interface().push_constant_bytes, bytes);
 }
 
+VkDescriptorSet Commands::prepare(const PassBase& pass, std::span<const Binding> bindings, const Buffer* arguments,
+                                  VkPipelineStageFlags2 stages) {
+    begin();
+    bool hazard = false;
+    const VkDescriptorSet set = bind(pass, bindings, hazard);
+    if (arguments) touch(*arguments, true, false, hazard);
+    barrier_if(hazard, stages);
+    mark(bindings, pass);
+    if (arguments) access(*arguments).read = true;
+    return set;
+}
+
+void Commands::start(const PassBase& pass, VkPipelineBindPoint point, VkDescriptorSet set, const void* params,
+                     size_t bytes) {
+    label(pass.name());
+    begin_timer(pass.name());
+    device_.vk.vkCmdBindPipeline(commands_, point, pass.pipeline());
+    device_.vk.vkCmdBindDescriptorSets(commands_, point, pass.layout(), 0, 1, &set, 0, nullptr);
+    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+}
+
+void Commands::finish() {
+    end_timer();
+    end_label();
+}
+
 void Commands::record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
                       Groups groups, const Buffer* arguments, uint64_t offset) {
     check_params(pass, bytes);
@@ -232,26 +258,13 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     if (!arguments && (groups.x > most[0] || groups.y > most[1] || groups.z > most[2]))
         fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc",
              pass.name(), groups.x, groups.y, groups.z, device_.info().name);
-    begin();
-    bool hazard = false;
-    const VkDescriptorSet set = bind(pass, bindings, hazard);
-    if (arguments) touch(*arguments, true, false, hazard);
-    barrier_if(hazard, kCompute);
-    mark(bindings, pass);
-    if (arguments) access(*arguments).read = true;
-
-    label(pass.name());
-    begin_timer(pass.name());
-    device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.pipeline());
-    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pass.layout(), 0, 1, &set, 0,
-                                       nullptr);
-    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+    const VkDescriptorSet set = prepare(pass, bindings, arguments, kCompute);
+    start(pass, VK_PIPELINE_BIND_POINT_COMPUTE, set, params, bytes);
     if (arguments)
         device_.vk.vkCmdDispatchIndirect(commands_, arguments->handle(), offset);
     else
         device_.vk.vkCmdDispatch(commands_, groups.x, groups.y, groups.z);
-    end_timer();
-    end_label();
+    finish();
 }
 
 void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
@@ -274,12 +287,7 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
     if (indirect) access(indirect->arguments).read = true;
     if (copied) access(*copied).written = true;
 
-    label(pass.name());
-    begin_timer(pass.name());
-    device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.pipeline());
-    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pass.layout(), 0, 1, &set, 0,
-                                       nullptr);
-    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+    start(pass, VK_PIPELINE_BIND_POINT_GRAPHICS, set, params, bytes);
     const uint32_t draws = indirect ? indirect->draws : uint32_t(ranges.size());
     assert(!targets.apart || draws == targets.layers);
     // Nothing to draw still clears the targets.
@@ -306,8 +314,7 @@ void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bind
         access(color).read = true;
         access(*copied).written = true;
     }
-    end_timer();
-    end_label();
+    finish();
 }
 
 void Commands::begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer) {

@@ -199,6 +199,13 @@ class Commands {
     VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
     void mark(std::span<const Binding> bindings, const PassBase& pass);
     static void check_params(const PassBase& pass, size_t bytes);
+    /// Before a pass without targets: its set, the barrier it needs, and what it does to its bindings and to the buffer
+    /// of its indirect command, if any.
+    VkDescriptorSet prepare(const PassBase& pass, std::span<const Binding> bindings, const Buffer* arguments,
+                            VkPipelineStageFlags2 stages);
+    /// Opens the label and the timer of a pass and binds all that its command needs. To be closed by finish().
+    void start(const PassBase& pass, VkPipelineBindPoint point, VkDescriptorSet set, const void* params, size_t bytes);
+    void finish();
     void record(const Pass& pass, std::span<const Binding> bindings, const void* params, size_t bytes, Groups groups,
                 const Buffer* arguments, uint64_t offset);
     void record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,

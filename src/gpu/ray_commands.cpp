@@ -19,28 +19,15 @@ void Commands::record_rays(const RayPass& pass, std::span<const Binding> binding
     if (rays > device_.ray_tracing_limits().most_rays)
         fail("the pass {} starts {} rays, more than the {} that the device '{}' takes: use a smaller --size",
              pass.name(), rays, device_.ray_tracing_limits().most_rays, device_.info().name);
-    begin();
-    bool hazard = false;
-    const VkDescriptorSet set = bind(pass, bindings, hazard);
-    if (arguments) touch(*arguments, true, false, hazard);
-    barrier_if(hazard, kRays);
-    mark(bindings, pass);
-    if (arguments) access(*arguments).read = true;
-
-    label(pass.name());
-    begin_timer(pass.name());
-    device_.vk.vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pass.pipeline());
-    device_.vk.vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pass.layout(), 0, 1, &set, 0,
-                                       nullptr);
-    device_.vk.vkCmdPushConstants(commands_, pass.layout(), pass.stages(), 0, uint32_t(bytes), params);
+    const VkDescriptorSet set = prepare(pass, bindings, arguments, kRays);
+    start(pass, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, set, params, bytes);
     const VkStridedDeviceAddressRegionKHR none{};
     if (arguments)
         device_.vk.vkCmdTraceRaysIndirectKHR(commands_, &pass.generation(), &pass.misses(), &pass.hits(), &none,
                                              arguments->address() + offset);
     else if (rays > 0)
         device_.vk.vkCmdTraceRaysKHR(commands_, &pass.generation(), &pass.misses(), &pass.hits(), &none, rays, 1, 1);
-    end_timer();
-    end_label();
+    finish();
 }
 
 void Commands::build(const std::string& name, std::span<const StructureBuild> builds, const Buffer& scratch) {

@@ -64,7 +64,7 @@ struct Renderer::Impl {
     GpuScene scene;
     std::unique_ptr<SceneCubes> cubes;
     std::unique_ptr<CubeMaps> maps;
-    std::vector<StructureBody> bodies;  ///< of the structures, as they are now or would be
+    std::vector<StructureBody> bodies;  ///< of the structures, as they are now or would be; none without ray tracing
     std::unique_ptr<Structures> structures;
     PathQueues queues;
     Commands commands;
@@ -91,7 +91,7 @@ struct Renderer::Impl {
           assembly(without_geometry(assembly)),
           moment(&source),
           scene(device, source, assembly, environment),
-          bodies(structure_bodies(source, assembly)),
+          bodies(device.features.ray_tracing ? structure_bodies(source, assembly) : std::vector<StructureBody>()),
           queues(device),
           commands(device),
           view(device),
@@ -126,7 +126,6 @@ struct Renderer::Impl {
     void record_shadows_khr();
     RayQueue queue_of(uint32_t level);
     void record_trace_of(uint32_t level);
-    void record_cube_trace(uint32_t level, const Buffer& hits);
     void record_band(uint32_t sample, uint32_t first_row);
     bool finish_band(uint32_t first_row);
     void render_frame(const std::function<void(double)>& progress);
@@ -359,14 +358,9 @@ RayQueue Renderer::Impl::queue_of(uint32_t level) {
 
 void Renderer::Impl::record_trace_of(uint32_t level) {
     const Buffer& hits = queues.level(level).hits;
-    if (settings.tracer == Tracer::khr)
-        record_khr_trace(commands, device, *structures, scene.triangles, queue_of(level), hits, false);
-    else
-        record_cube_trace(level, hits);
-}
-
-void Renderer::Impl::record_cube_trace(uint32_t level, const Buffer& hits) {
     RayQueue queue = queue_of(level);
+    if (settings.tracer == Tracer::khr)
+        return record_khr_trace(commands, device, *structures, scene.triangles, queue, hits, false);
     const CountBuffers counting = counter ? counter->level(level) : CountBuffers{hits, hits};
     if (counter) queue.counting = &counting;
     record_trace(commands, device, traced(), queue, hits, {hit, settings.tolerance, false, Edges::single});

@@ -2,33 +2,18 @@
 // their time.
 #include <fmt/format.h>
 
-#include "cli/sequence_fixture.h"
+#include "cli/bench_fixture.h"
 
 namespace peelray {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-class RayBenchTest : public SequenceTest {
+class RayBenchTest : public BenchFixture {
   protected:
-    void SetUp() override {
-        SequenceTest::SetUp();
-        fs::create_directory(folder / "models");
+    RayBenchTest()
+        : BenchFixture({"--scenes", "blob:500", "--size", "64x48", "--repeat", "2", "--sizes", "none", "--ldc", "64"}) {
     }
-
-    /// A small run; options of `more` take the place of these.
-    Words small(const Words& more = {}) const {
-        Words all = {"bench",    "--models", in("models"), "--scenes", "blob:500", "--size", "64x48",
-                     "--repeat", "2",        "--sizes",    "none",     "--ldc",    "64"};
-        for (const std::string& word : more) {
-            const auto found = std::find(all.begin(), all.end(), word);
-            if (word.starts_with("--") && found != all.end()) all.erase(found, found + 2);
-        }
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
-    }
-    Json json() const { return Json::parse(get(out("b.json"))); }
 };
 
 TEST_F(RayBenchTest, EverySetOfRaysThroughOursAndEmbree) {
@@ -72,7 +57,9 @@ TEST_F(RayBenchTest, EverySetOfRaysThroughOursAndEmbree) {
             if (!counts.contains(kind)) counts[kind] = set["rays"];
             EXPECT_EQ(counts[kind], set["rays"]);
         }
-        if (!row["dynamic_ms"].is_null()) EXPECT_NEAR(row["dynamic_ms"], sum, 1e-6);
+        if (!row["dynamic_ms"].is_null()) {
+            EXPECT_NEAR(row["dynamic_ms"], sum, 1e-6);
+        }
         if (row["contender"] != "ldc") continue;
         EXPECT_GT(row["frame_ms"]["median"], 0);
         EXPECT_GT(row["memory_bytes"]["samples"], 0);
@@ -93,7 +80,9 @@ TEST_F(RayBenchTest, ChosenRaysTraversalsSizesAndPlots) {
     for (const Json& row : all["rows"]) {
         two_level += row["traversal"] == "two-level";
         series += row["series"] == "rays";
-        if (row["left_out"].is_null()) EXPECT_EQ(row["rays"].size(), row["series"] == "rays" ? 1u : 2u);
+        if (row["left_out"].is_null()) {
+            EXPECT_EQ(row["rays"].size(), row["series"] == "rays" ? 1u : 2u);
+        }
     }
     EXPECT_EQ(two_level, 4u);
     EXPECT_EQ(series, 8u);  // exact, khr twice and Embree at two sizes, of the blob that is nearer to 300000

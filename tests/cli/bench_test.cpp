@@ -2,7 +2,7 @@
 // built-in scenes stand in.
 #include <fmt/format.h>
 
-#include "cli/sequence_fixture.h"
+#include "cli/bench_fixture.h"
 
 namespace peelray {
 namespace {
@@ -10,24 +10,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-class Bench : public SequenceTest {
+class Bench : public BenchFixture {
   protected:
-    void SetUp() override {
-        SequenceTest::SetUp();
-        fs::create_directory(folder / "models");
-    }
-
-    /// `peelray bench --paper` of a small picture; options of `more` take the place of these.
-    Words small(const Words& more = {}) const {
-        Words all = {"bench", "--paper", "--models", in("models"), "--size", "32x24", "--repeat", "1"};
-        for (const std::string& word : more) {
-            const auto found = std::find(all.begin(), all.end(), word);
-            if (word.starts_with("--") && found != all.end()) all.erase(found, found + 2);
-        }
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
-    }
-    Json json(const std::string& name = "b.json") const { return Json::parse(get(out(name))); }
+    Bench() : BenchFixture({"--paper", "--size", "32x24", "--repeat", "1"}) {}
 };
 
 Words way_of(const Json& row) {
