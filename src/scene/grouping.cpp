@@ -11,8 +11,6 @@ namespace {
 /// Costs relative to each other: of a ray's start in a cube whose box it meets, of a look at one sample in the lists
 /// that it meets near a surface, and of finding out which of two boxes it meets.
 constexpr double kStart = 4, kSample = 2, kBoxes = 1;
-/// Voxels along a cube's longest side, by the cube root of its triangles, where such costs were measured.
-constexpr double kVoxels = 6;
 /// Share of the cost that a split must save.
 constexpr double kGain = 0.1;
 /// Share of all rays that both groups of a split must have: for a few rays no cube is worth its start.
@@ -42,7 +40,7 @@ class Extent {
     /// that touch them: (1 + h / e)² of edge length e at a voxel's edge h.
     double cost() const {
         const glm::vec3 size = upper_ - lower_;
-        const double h = std::max({size.x, size.y, size.z}) / (kVoxels * std::cbrt(double(triangles_)));
+        const double h = std::max({size.x, size.y, size.z}) / double(serving_resolution(triangles_));
         return kStart * weight_ + kSample * (weight_ + 2 * h * by_edge_ + h * h * by_edge2_);
     }
     double weight() const { return weight_; }

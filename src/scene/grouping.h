@@ -16,8 +16,8 @@ struct Part {
 
 /// Groups of parts, as lists of their indices in ascending order; at most 256. A group is split in two where rays would
 /// find their hits in two cubes for less than in one: by an estimate of that cost like the surface area heuristic of
-/// bounding volume hierarchies (MacDonald and Booth 1990), for cubes as fine as their triangles deserve. So a large
-/// ground does not cost the small things on it the fineness of their voxels, and what lies together stays together.
+/// bounding volume hierarchies (MacDonald and Booth 1990), for cubes of serving_resolution(). So a large ground
+/// does not cost the small things on it the fineness of their voxels, and what lies together stays together.
 std::vector<std::vector<uint32_t>> group_parts(const std::vector<Part>& parts);
 
 }  // namespace peelray
