@@ -2,8 +2,7 @@
 SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 PROGRAM := build/release/peelray
-# Tests run one program after the other: each already uses all cores.
-CTEST := ctest --output-on-failure --no-tests=error
+CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 .PHONY: help demo build test clean format check-format packages test-packages
 .DEFAULT_GOAL := help

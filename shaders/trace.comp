@@ -1,17 +1,4 @@
-// Traces a queue of rays in the cubes.
+// Traces a queue of rays in the cubes by voxel.
 #version 460
-#include "common.glsl"
-#include "params.h"
-#include "trace_queue.glsl"
-layout(constant_id = 6) const uint batch = 0u;  // PEELRAY_ONE, ...
-layout(constant_id = 7) const uint instance_count = 0u;  // up to 8; 0: any number
-
-void main() {
-    const uint i = GLOBAL_INDEX;
-    if (i >= queueLength()) return;
-    const Ray ray = rays[i];
-    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch, instance_count);
-    countNothing();
-    queueStore(i, ray, peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), queueSkip(i), options));
-    countRay(COUNT_TRACED, 0u, i);
-}
+#define PEELRAY_ONLY_VOXELS
+#include "trace_one.glsl"

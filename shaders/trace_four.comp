@@ -3,6 +3,7 @@
 #include "common.glsl"
 #include "params.h"
 #define COUNT_RAYS 4
+#define PEELRAY_ONLY_PIXELS
 #include "trace_queue.glsl"
 
 void main() {

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kWarmUp = 3;  ///< frames, beside the renderer's own first one
+constexpr uint32_t kWarmUpOfChoice = 3;  ///< frames, beside the renderer's own first one
 
 /// A frame's time with one choice.
 struct Choice {
@@ -92,7 +92,7 @@ void AutoCheck::time(const PictureArguments& arguments, const PreparedScene& sce
     RenderSettings settings = settings_of(picture);
     settings.camera = scene.camera;
     settings.bounds = scene.bounds;
-    settings.repeat = a_.repeat + kWarmUp + 1;
+    settings.repeat = a_.repeat + kWarmUpOfChoice + 1;
     settings.time_passes = false;
     probe_.warm_up();
     const RenderResult result = renderer.render(settings, [](double) { check_interrupt(); });

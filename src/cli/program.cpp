@@ -35,14 +35,6 @@ std::string describe(const CLI::ParseError& error, const CLI::App& program) {
 
 }  // namespace
 
-const char* build_commit() {
-    return PEELRAY_COMMIT;
-}
-
-const char* program_version() {
-    return PEELRAY_VERSION;
-}
-
 void TracingArguments::check() const {
     if (ldc && (*ldc < 16 || *ldc > 2048))
         fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
@@ -110,7 +102,7 @@ int run_program(int argc, const char* const* argv) {
         "It turns the scene into a layered depth cube, in which it traces the secondary rays."};
     program.name("peelray");
     program.require_subcommand(1);
-    program.set_version_flag("--version", std::string("peelray ") + PEELRAY_VERSION + " (" + PEELRAY_COMMIT + ")");
+    program.set_version_flag("--version", fmt::format("peelray {} ({})", program_version(), build_commit()));
     program.footer(
         "Try:  peelray render builtin:teapots -o teapots.png\n"
         "Each command has its own help:  peelray render --help");

@@ -24,6 +24,11 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
+std::vector<Binding> declared(const PassBase& pass, std::vector<Binding> bindings) {
+    std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
+    return bindings;
+}
+
 Commands::Commands(Device& device)
     : device_(device),
       work_(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |

@@ -30,6 +30,9 @@ struct Binding {
     Binding(std::string_view n, const AccelerationStructure& s) : name(n), structure(&s) {}
 };
 
+/// Those bindings that the pass declares: for shaders that leave out what others of their kind need.
+std::vector<Binding> declared(const PassBase& pass, std::vector<Binding> bindings);
+
 /// How often a compute pass runs, in workgroups.
 struct Groups {
     uint32_t x = 1, y = 1, z = 1;

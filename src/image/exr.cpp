@@ -149,20 +149,20 @@ Image decode(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 /// One channel to write: `data` is float32 or half, `stride` bytes from pixel to pixel.
-struct Plane {
+struct Channel {
     std::string name;
     const void* data;
     size_t stride;
 };
 
-std::string encode(uint32_t width, uint32_t height, Imf::PixelType type, const std::vector<Plane>& planes) {
+std::string encode(uint32_t width, uint32_t height, Imf::PixelType type, const std::vector<Channel>& channels) {
     Imf::Header header{int(width), int(height)};
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer buffer;
-    for (const Plane& plane : planes) {
-        header.channels().insert(plane.name, Imf::Channel(type));
-        buffer.insert(plane.name,
-                      Imf::Slice::Make(type, plane.data, header.dataWindow(), plane.stride, plane.stride * width));
+    for (const Channel& channel : channels) {
+        header.channels().insert(channel.name, Imf::Channel(type));
+        buffer.insert(channel.name, Imf::Slice::Make(type, channel.data, header.dataWindow(), channel.stride,
+                                                     channel.stride * width));
     }
     MemoryOut stream;
     {
@@ -200,7 +200,7 @@ std::string encode_exr(const std::filesystem::path& path, const Image& image, bo
         std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) { return p.w == 1; });
     const char* names[] = {"R", "G", "B", "A"};
     const size_t count = opaque ? 3 : 4;
-    std::vector<Plane> planes;
+    std::vector<Channel> channels;
     std::vector<std::array<Imath::half, 4>> halves;
     if (!full) {
         halves.reserve(image.pixels.size());
@@ -211,24 +211,24 @@ std::string encode_exr(const std::filesystem::path& path, const Image& image, bo
     }
     for (size_t c = 0; c < count; ++c) {
         if (full)
-            planes.push_back({names[c], &image.pixels[0][int(c)], sizeof(glm::vec4)});
+            channels.push_back({names[c], &image.pixels[0][int(c)], sizeof(glm::vec4)});
         else
-            planes.push_back({names[c], &halves[0][c], sizeof halves[0]});
+            channels.push_back({names[c], &halves[0][c], sizeof halves[0]});
     }
     return guarded("write", path,
-                   [&] { return encode(image.width, image.height, full ? Imf::FLOAT : Imf::HALF, planes); });
+                   [&] { return encode(image.width, image.height, full ? Imf::FLOAT : Imf::HALF, channels); });
 }
 
 void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
                         const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels) {
     check_size("write", path, width, height);
     assert(!names.empty() && names.size() == channels.size());
-    std::vector<Plane> planes;
+    std::vector<Channel> described;
     for (size_t i = 0; i < names.size(); ++i) {
         assert(channels[i].size() == size_t(width) * height);
-        planes.push_back({names[i], channels[i].data(), sizeof(float)});
+        described.push_back({names[i], channels[i].data(), sizeof(float)});
     }
-    store_file(path, guarded("write", path, [&] { return encode(width, height, Imf::FLOAT, planes); }));
+    store_file(path, guarded("write", path, [&] { return encode(width, height, Imf::FLOAT, described); }));
 }
 
 }  // namespace peelray

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/infinity.h"
 #include "image/codecs.h"
 
 namespace peelray {
@@ -64,7 +65,6 @@ struct Metric {
     double scale = 1;
     std::string_view unit = "";
 };
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array metrics = {
     Metric{"PSNR", "peak signal-to-noise ratio; higher is better, ∞: equal", &Difference::psnr, 2, infinity, true, 1,
            " dB"},

@@ -16,8 +16,7 @@ std::vector<Binding> khr_bindings(const RayPass& pass, const Structures& structu
                                   std::span<const Binding> bindings) {
     std::vector<Binding> all = {{"structures", structures.top()}, {"part_triangles", structures.part_triangles()}};
     all.insert(all.end(), bindings.begin(), bindings.end());
-    std::erase_if(all, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
-    return all;
+    return declared(pass, std::move(all));
 }
 
 void record_khr_trace(Commands& commands, Device& device, const Structures& structures,

@@ -62,7 +62,7 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
         for (const uint32_t c :
              {shader_constant(layout.batch), instance_constant(scene.instances), uint32_t(device.immediate)})
             constants.push_back(c);
-    const Pass& pass = device.pass(four ? "trace_four" : "trace", constants);
+    const Pass& pass = device.pass(four ? "trace_four" : layout.by_pixel() ? "trace_pixels" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();
     p.count = queue.count;
@@ -71,17 +71,14 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     p.skips = queue.skip != nullptr;
     p.tolerance = options.tolerance;
     p.block = scene.cubes.layout().block;
-    std::vector<Binding> bindings;
-    for (const Binding& binding :
-         cube_bindings(scene, {{"rays", queue.rays},
-                               {"skip", queue.skip ? *queue.skip : queue.rays},
-                               {"queue", queue.counters ? *queue.counters : queue.rays},
-                               {"hits", hits},
-                               {"costs", queue.counting ? queue.counting->costs : hits},
-                               {"count_totals", queue.counting ? queue.counting->totals : hits}}))
-        // Four rays take the instances in turn, without the hierarchy, and only by pixel.
-        if (!four || (binding.name != "top_table" && binding.name != "instance_boxes")) bindings.push_back(binding);
-    bindings = with_alpha_test(bindings, scene.triangles);
+    std::vector<Binding> bindings =
+        cube_bindings(scene, {{"rays", queue.rays},
+                              {"skip", queue.skip ? *queue.skip : queue.rays},
+                              {"queue", queue.counters ? *queue.counters : queue.rays},
+                              {"hits", hits},
+                              {"costs", queue.counting ? queue.counting->costs : hits},
+                              {"count_totals", queue.counting ? queue.counting->totals : hits}});
+    bindings = declared(pass, with_alpha_test(bindings, scene.triangles));
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/infinity.h"
 #include "reference/bvh.h"
 
 namespace peelray {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 enum class Mode { nearest, occluded, collect };
 
@@ -24,7 +23,7 @@ struct Query : RTCIntersectContext {
     double reach = 0;    ///< of the scene's diagonal
     double begin = 0;    ///< scaled t of the origin that Embree got
     double to_unit = 1;  ///< from scaled t to Embree's
-    OracleHit hit{std::numeric_limits<double>::infinity(), ~0u, 0, 0};
+    OracleHit hit{infinity, ~0u, 0, 0};
     uint32_t index = ~0u;
     std::vector<uint32_t> collected;
 
@@ -42,10 +41,10 @@ struct Query : RTCIntersectContext {
         hit = found;
         hit.triangle = id;
         index = candidate;
-        if (mode == Mode::occluded) return -infinity;
+        if (mode == Mode::occluded) return -float(infinity);
         // Embree's own t is off by less than `reach`: every box that could hold a nearer hit stays in.
         const double t = (std::ldexp(hit.t, ray.exponent) - ray.start - begin) * to_unit + 2 * reach;
-        return std::min(tfar, std::nextafter(float(t), infinity));
+        return std::min(tfar, std::nextafter(float(t), float(infinity)));
     }
 
     /// The float ray for Embree: from where the ray enters the scene's box to where it leaves it, a little longer at
@@ -64,7 +63,7 @@ struct Query : RTCIntersectContext {
         const glm::vec3 origin((ray.origin + begin * ray.direction - center) / triangles.diagonal);
         const glm::vec3 direction(ray.direction / length);
         out = {origin.x, origin.y, origin.z, 0, direction.x, direction.y, direction.z, 0};
-        out.tfar = std::nextafter(float((last + slack - begin) * to_unit), infinity);
+        out.tfar = std::nextafter(float((last + slack - begin) * to_unit), float(infinity));
         out.mask = ~0u;
         out.id = out.flags = 0;
         return true;
@@ -167,7 +166,7 @@ double Oracle::diagonal() const {
 
 OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip, const AlphaTest& alpha) {
     const TriangleSet triangles(geometry);
-    OracleHit nearest{std::numeric_limits<double>::infinity(), ~0u, 0, 0};
+    OracleHit nearest{infinity, ~0u, 0, 0};
     const std::optional<PreparedRay> prepared = PreparedRay::make(ray, triangles);
     for (size_t i = 0; prepared && i < triangles.ids.size(); ++i) {
         OracleHit hit;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/infinity.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "reference/optics.h"
@@ -11,7 +12,6 @@
 namespace peelray {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint32_t bounces = 4, ambient_samples = 4;
 constexpr double glass_index = 1.5;
 /// As in shaders/frame.glsl.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/infinity.h"
 #include "reference/optics.h"
 
 namespace peelray {
@@ -10,7 +11,6 @@ namespace {
 
 using namespace optics;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Branches that carry less of the pixel's light are not traced: they see the environment.
 constexpr double least_weight = 1.0 / 512;
 /// Layers of glass that a shadow ray passes before it counts as blocked.

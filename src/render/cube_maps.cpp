@@ -1,13 +1,14 @@
 #include "render/cube_maps.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "render/cube_faces.h"
 
 namespace peelray {
 namespace {
 
-constexpr uint32_t kFace = 512, kSmallestFace = 16, kMostSamples = 4;
+constexpr uint32_t kLargestFace = 512, kUsualFace = 128, kSmallestFace = 16, kMostSamples = 4;
 constexpr uint64_t kMostBytes = 512ull << 20, kTexelBytes = 8;
 
 uint32_t level_size(uint32_t face, uint32_t level) {
@@ -23,11 +24,7 @@ uint32_t level_offset(uint32_t face, uint32_t level) {
 }  // namespace
 
 CubeMaps::CubeMaps(Device& device, const GpuScene& scene, const Scene& source, const Geometry& geometry)
-    : device_(device),
-      scene_(scene),
-      objects_(source, geometry),
-      shadows_(device),
-      target_(device) {}
+    : device_(device), scene_(scene), objects_(source, geometry), shadows_(device), target_(device) {}
 
 bool CubeMaps::place_probes(const std::vector<uint32_t>& chosen, uint64_t room) {
     probes_.clear();
@@ -42,7 +39,7 @@ bool CubeMaps::place_probes(const std::vector<uint32_t>& chosen, uint64_t room) 
     return true;
 }
 
-void CubeMaps::choose_probes(const PictureSettings& settings) {
+void CubeMaps::choose_probes(const PictureSettings& settings, uint32_t pixels) {
     std::vector<uint32_t> chosen;
     if (settings.bounces > 0)
         for (uint32_t i = 0; i < objects_.objects().size(); i++)
@@ -53,7 +50,9 @@ void CubeMaps::choose_probes(const PictureSettings& settings) {
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](uint32_t a, uint32_t b) { return size(a) > size(b); });
     const uint64_t room = std::min<uint64_t>(device_.limits().maxStorageBufferRange, kMostBytes);
-    for (face_ = kFace; !place_probes(chosen, room) && face_ > kSmallestFace;) face_ /= 2;
+    for (face_ = std::clamp(std::bit_ceil(pixels), kUsualFace, kLargestFace);
+         !place_probes(chosen, room) && face_ > kSmallestFace;)
+        face_ /= 2;
     if (chosen.empty()) face_ = 0;
     left_out_ = uint32_t(chosen.size() - probes_.size());
     rounds_ = probes_.empty() ? 0 : settings.bounces > 1 ? 2 : 1;
@@ -107,8 +106,9 @@ void CubeMaps::upload_frames(Commands& commands, const Frame& picture) {
 
 void CubeMaps::prepare(Commands& commands, const PictureSettings& settings, const Frame& picture, const Box& box) {
     objects_.upload(device_, commands);
-    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), box.lower, box.upper, picture);
-    choose_probes(settings);
+    shadows_.prepare(commands, settings.shadow ? scene_.light_list : std::vector<GpuLight>(), box.lower, box.upper,
+                     picture);
+    choose_probes(settings, std::max(picture.width, picture.height));
     for (uint32_t i = 0; i < std::max(rounds_, 1u); i++)
         ensure_size(device_, texels_[i], "probes", texel_count_ * kTexelBytes);
     current_ = nullptr;

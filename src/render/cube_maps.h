@@ -42,7 +42,8 @@ class CubeMaps {
         bool rough;              ///< has the blurred levels, too
     };
     glm::vec3 position(uint32_t object) const;
-    void choose_probes(const PictureSettings& settings);
+    /// `pixels`: along the longer side of the picture; faces are as fine as it within bounds.
+    void choose_probes(const PictureSettings& settings, uint32_t pixels);
     bool place_probes(const std::vector<uint32_t>& chosen, uint64_t room);
     void upload_frames(Commands& commands, const Frame& picture);
     void record_face(Commands& commands, PathQueues& queues, size_t index, uint32_t face, const Buffer& texels);

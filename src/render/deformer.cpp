@@ -2,19 +2,12 @@
 
 #include <algorithm>
 
+#include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/transform.h"
 
 namespace peelray {
 namespace {
-
-/// A buffer that holds `data`; never empty, so that it can be bound.
-template <typename T>
-Buffer upload(Device& device, Commands& commands, const char* name, const std::vector<T>& data) {
-    Buffer buffer(device, name, std::max<size_t>(data.size(), 1) * sizeof(T));
-    if (!data.empty()) commands.upload(buffer, std::span<const T>(data));
-    return buffer;
-}
 
 const Node& node_of(const Scene& scene, const Assembly::Piece& place) {
     return scene.nodes[size_t(place.node)];
@@ -160,8 +153,7 @@ void Deformer::turn_over(Commands& commands, size_t piece, const Primitive& prim
         if (mirrors) std::swap(t.y, t.z);
         turned.push_back(t + pieces_[piece].first_vertex);
     }
-    commands.upload(triangles, std::span<const glm::uvec3>(turned),
-                    pieces_[piece].first_triangle * sizeof(glm::uvec3));
+    commands.upload(triangles, std::span<const glm::uvec3>(turned), pieces_[piece].first_triangle * sizeof(glm::uvec3));
     mirrored_[piece] = mirrors;
 }
 

@@ -8,26 +8,11 @@
 #include "khr/tracer.h"
 #include "render/compute_view.h"
 #include "render/structure_bodies.h"
+#include "render/time_table.h"
 #include "render/transforms.h"
 
 namespace peelray {
 namespace {
-
-/// Adds up pass times by name, keeping the order of first appearance.
-class TimeTable {
-  public:
-    void add(const std::vector<PassTime>& times) {
-        for (const PassTime& time : times) {
-            auto found = std::find_if(rows_.begin(), rows_.end(), [&](auto& row) { return row.name == time.name; });
-            if (found == rows_.end()) found = rows_.insert(rows_.end(), {time.name, 0});
-            found->ms += time.ms;
-        }
-    }
-    const std::vector<RenderStats::Time>& rows() const { return rows_; }
-
-  private:
-    std::vector<RenderStats::Time> rows_;
-};
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
@@ -410,12 +395,12 @@ void Renderer::Impl::record_shadows() {
         bindings = with_alpha_test(bindings, scene.triangles);
     }
     const Pass& pass =
-        device.pass(scene.has_glass ? "trace_shadow_glass" : "trace_shadow",
+        device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
+                        (settings.layout.by_pixel() ? "_pixels" : ""),
                     {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
                      scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances),
                      device.immediate, counter != nullptr});
-    std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
-    commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
+    commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }
 
 /// Traces and shades the levels of the tree of rays, then all their shadow rays, and gathers the light. Where a queue

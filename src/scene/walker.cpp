@@ -42,10 +42,6 @@ const std::array<JointPlace, joint_count>& walker_joints() {
 
 namespace {
 
-vec3 place(Joint joint) {
-    return walker_joints()[size_t(joint)].at;
-}
-
 std::vector<Bone> walker_bones() {
     std::vector<Bone> out;
     const auto add = [&](Joint joint, const vec3& a, const vec3& b, float radius) {
@@ -60,14 +56,16 @@ std::vector<Bone> walker_bones() {
     add(Joint::neck, {0, 1.16f, 0}, {0, 1.23f, 0}, 0.10f);
     add(Joint::head, {0, 1.38f, 0}, {0, 1.64f, -0.03f}, 0.16f);
     const size_t middle = out.size();
-    add(Joint::left_collar, place(Joint::left_collar), {0.11f, 1.12f, -0.005f}, 0.085f);
-    add(Joint::left_arm, 0.85f * place(Joint::left_arm) + 0.15f * place(Joint::left_forearm),
-        place(Joint::left_forearm), 0.060f);
-    add(Joint::left_forearm, place(Joint::left_forearm), place(Joint::left_hand), 0.058f);
-    const vec3 along = place(Joint::left_hand) - place(Joint::left_forearm);
-    add(Joint::left_hand, place(Joint::left_hand), place(Joint::left_hand) + 0.5f * along, 0.055f);
-    add(Joint::left_thigh, place(Joint::left_thigh) - vec3(0, 0.05f, 0), place(Joint::left_shin), 0.08f);
-    add(Joint::left_shin, place(Joint::left_shin), place(Joint::left_foot) + vec3(0, 0.06f, 0), 0.066f);
+    add(Joint::left_collar, joint_position(Joint::left_collar), {0.11f, 1.12f, -0.005f}, 0.085f);
+    add(Joint::left_arm, 0.85f * joint_position(Joint::left_arm) + 0.15f * joint_position(Joint::left_forearm),
+        joint_position(Joint::left_forearm), 0.060f);
+    add(Joint::left_forearm, joint_position(Joint::left_forearm), joint_position(Joint::left_hand), 0.058f);
+    const vec3 along = joint_position(Joint::left_hand) - joint_position(Joint::left_forearm);
+    add(Joint::left_hand, joint_position(Joint::left_hand), joint_position(Joint::left_hand) + 0.5f * along, 0.055f);
+    add(Joint::left_thigh, joint_position(Joint::left_thigh) - vec3(0, 0.05f, 0), joint_position(Joint::left_shin),
+        0.08f);
+    add(Joint::left_shin, joint_position(Joint::left_shin), joint_position(Joint::left_foot) + vec3(0, 0.06f, 0),
+        0.066f);
     add(Joint::left_foot, {0.092f, 0.08f, -0.014f}, {0.097f, 0.03f, 0.060f}, 0.055f);
     add(Joint::left_foot, {0.092f, 0.03f, -0.03f}, {0.097f, 0.03f, 0.060f}, 0.055f);
     add(Joint::left_toes, {0.098f, 0.03f, 0.080f}, {0.099f, 0.03f, 0.14f}, 0.055f);
@@ -111,7 +109,7 @@ float triangle_size(const vec3& p) {
 
 /// How far down the line between two joints of its side a point lies, and how far off that line.
 glm::vec2 along(Joint left_from, Joint left_to, const vec3& p) {
-    const vec3 from = place(left_from), direction = glm::normalize(place(left_to) - from);
+    const vec3 from = joint_position(left_from), direction = glm::normalize(joint_position(left_to) - from);
     const vec3 way = vec3(std::abs(p.x), p.y, p.z) - from;
     const float down = glm::dot(way, direction);
     return {down, glm::length(way - down * direction)};
@@ -150,7 +148,7 @@ void paint(PartedMesh& mesh) {
     for (const float low : {0.832f, 0.876f}) give_band(mesh, jumper, Garment::stripes, height, low, low + 0.024f);
     for (const float low : {0.088f, 0.130f})
         give_band(mesh, sleeves, Garment::stripes, down_forearm, low, low + 0.022f);
-    const float sleeve = glm::distance(place(Joint::left_forearm), place(Joint::left_hand));
+    const float sleeve = glm::distance(joint_position(Joint::left_forearm), joint_position(Joint::left_hand));
     draw_line(mesh, sleeves,
               [&](const vec3& p) { return sleeve - 0.027f - along(Joint::left_forearm, Joint::left_hand, p).x; });
     mesh.give_rest(sleeves, [](const vec3&) { return jumper; });

@@ -42,6 +42,10 @@ struct JointPlace {
     glm::vec3 at;  ///< where the joint is when the figure is bound: arms half lowered, every joint's axes the world's
 };
 const std::array<JointPlace, joint_count>& walker_joints();
+/// JointPlace::at.
+inline glm::vec3 joint_position(Joint joint) {
+    return walker_joints()[size_t(joint)].at;
+}
 
 /// The figure as it is bound: one closed surface, cut into a primitive for each colour (their borders have the same
 /// vertices), eyes, brows and mouth being closed bodies of their own. `materials`: see walker_materials().

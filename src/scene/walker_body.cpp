@@ -34,10 +34,6 @@ void add_both(SoftGroup& group, const Piece& left) {
     group.pieces.push_back(right);
 }
 
-vec3 place(Joint joint) {
-    return walker_joints()[size_t(joint)].at;
-}
-
 SoftGroup seat() {
     SoftGroup out{.part = uint32_t(Garment::trousers)};
     out.pieces.push_back(cone({-0.045f, 0.81f, -0.012f}, 0.108f, {0.045f, 0.81f, -0.012f}, 0.108f, {1, 1, 1.1f}));
@@ -47,7 +43,7 @@ SoftGroup seat() {
 
 SoftGroup left_leg() {
     SoftGroup out{.part = uint32_t(Garment::trousers), .seam = 0.04f};
-    const vec3 hip = place(Joint::left_thigh), knee = place(Joint::left_shin);
+    const vec3 hip = joint_position(Joint::left_thigh), knee = joint_position(Joint::left_shin);
     out.pieces.push_back(cone(hip + vec3(-0.001f, -0.03f, 0), 0.082f, knee, 0.066f));
     // The lower leg begins with the very ball that the upper one ends with: no more than a hint of a blend.
     out.pieces.push_back(blended(cone(knee, 0.066f, {0.092f, 0.13f, -0.012f}, 0.068f), 0.006f));
@@ -78,14 +74,16 @@ SoftGroup jumper() {
     out.pieces.push_back(blended(ball({0, 0.90f, 0.022f}, 0.130f), 0.06f));
     out.pieces.push_back(blended(cone({-0.055f, 1.03f, 0}, 0.118f, {0.055f, 1.03f, 0}, 0.118f, {1, 1, 1.08f}), 0.08f));
     add_both(out,
-             blended(cone({0, 1.10f, -0.006f}, 0.092f, place(Joint::left_arm) + vec3(-0.02f, 0, 0), 0.070f), 0.05f));
+             blended(cone({0, 1.10f, -0.006f}, 0.092f, joint_position(Joint::left_arm) + vec3(-0.02f, 0, 0), 0.070f),
+                     0.05f));
     out.cuts.push_back({{0, -1, 0}, -0.762f, 0.016f});
     return out;
 }
 
 SoftGroup left_sleeve() {
     SoftGroup out{.part = uint32_t(Garment::jumper), .seam = 0.055f};
-    const vec3 shoulder = place(Joint::left_arm), elbow = place(Joint::left_forearm), wrist = place(Joint::left_hand);
+    const vec3 shoulder = joint_position(Joint::left_arm), elbow = joint_position(Joint::left_forearm),
+               wrist = joint_position(Joint::left_hand);
     out.pieces.push_back(cone(shoulder, 0.068f, elbow, 0.056f));
     out.pieces.push_back(blended(cone(elbow, 0.056f, wrist, 0.055f), 0.006f));
     const vec3 along = glm::normalize(wrist - elbow);
@@ -95,7 +93,7 @@ SoftGroup left_sleeve() {
 
 SoftGroup left_mitten() {
     SoftGroup out{.part = uint32_t(Garment::mittens)};
-    const vec3 elbow = place(Joint::left_forearm), wrist = place(Joint::left_hand);
+    const vec3 elbow = joint_position(Joint::left_forearm), wrist = joint_position(Joint::left_hand);
     const vec3 along = glm::normalize(wrist - elbow), forwards = glm::normalize(glm::cross(vec3(1, 0, 0), along));
     const vec3 inwards = glm::cross(forwards, along);
     out.pieces.push_back(cone(wrist - 0.05f * along, 0.040f, wrist + 0.02f * along, 0.040f));

@@ -11,8 +11,8 @@ using glm::vec3;
 
 namespace {
 
-const JointPlace& place(Joint joint) {
-    return walker_joints()[size_t(joint)];
+Joint parent_of(Joint joint) {
+    return walker_joints()[size_t(joint)].parent;
 }
 
 Joint on(Side side, Joint left, Joint right) {
@@ -30,7 +30,7 @@ quat between(const vec3& from, const vec3& from_second, const vec3& to, const ve
 
 }  // namespace
 
-WalkerPose::WalkerPose() : hips_(place(Joint::hips).at) {
+WalkerPose::WalkerPose() : hips_(joint_position(Joint::hips)) {
     rotations_.fill(quat(1, 0, 0, 0));
 }
 
@@ -44,16 +44,16 @@ void WalkerPose::turn(Joint joint, const quat& rotation) {
 }
 
 vec3 WalkerPose::translation(Joint joint) const {
-    return joint == Joint::hips ? hips_ : place(joint).at - place(place(joint).parent).at;
+    return joint == Joint::hips ? hips_ : joint_position(joint) - joint_position(parent_of(joint));
 }
 
 quat WalkerPose::orientation(Joint joint) const {
-    return joint == Joint::root ? rotation(joint) : orientation(place(joint).parent) * rotation(joint);
+    return joint == Joint::root ? rotation(joint) : orientation(parent_of(joint)) * rotation(joint);
 }
 
 vec3 WalkerPose::position(Joint joint) const {
     if (joint == Joint::root) return vec3(0);
-    const Joint parent = place(joint).parent;
+    const Joint parent = parent_of(joint);
     return position(parent) + orientation(parent) * translation(joint);
 }
 
@@ -62,7 +62,7 @@ void WalkerPose::set_arm(Side side, const ArmBend& bend) {
     const Joint arm = on(side, Joint::left_arm, Joint::right_arm),
                 forearm = on(side, Joint::left_forearm, Joint::right_forearm),
                 hand = on(side, Joint::left_hand, Joint::right_hand);
-    const vec3 bound = glm::normalize(place(forearm).at - place(arm).at);
+    const vec3 bound = glm::normalize(joint_position(forearm) - joint_position(arm));
     const vec3 hinge = glm::normalize(vec3(-bound.y, sign * std::abs(bound.x), 0));  // to the left, across the arm
     const float raised = std::atan2(std::abs(bound.x), -bound.y);
     turn(arm, bound, -sign * bend.roll);
@@ -78,7 +78,8 @@ void WalkerPose::set_foot(Side side, const FootPlace& foot) {
                 shin = on(side, Joint::left_shin, Joint::right_shin),
                 ankle = on(side, Joint::left_foot, Joint::right_foot),
                 toes = on(side, Joint::left_toes, Joint::right_toes);
-    const vec3 upper = place(shin).at - place(thigh).at, lower = place(ankle).at - place(shin).at;
+    const vec3 upper = joint_position(shin) - joint_position(thigh),
+               lower = joint_position(ankle) - joint_position(shin);
     const float a = glm::length(upper), b = glm::length(lower);
     const vec3 hip = position(thigh), way = foot.ankle - hip;
     const float distance = std::min(glm::length(way), 0.9995f * (a + b));
@@ -103,7 +104,7 @@ void WalkerPose::set_foot(Side side, const FootPlace& foot) {
 FootRoll roll_foot(float pitch, float toes) {
     // Seen from the side, heel and tip of the sole are round: circles of this radius.
     constexpr float round = 0.003f;
-    const vec3 ankle = place(Joint::left_foot).at, joint = place(Joint::left_toes).at;
+    const vec3 ankle = joint_position(Joint::left_foot), joint = joint_position(Joint::left_toes);
     const auto turned = [](const vec3& v, float angle) {
         return glm::vec2(v.z * std::cos(angle) - v.y * std::sin(angle), v.y * std::cos(angle) + v.z * std::sin(angle));
     };

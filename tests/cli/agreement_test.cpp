@@ -6,12 +6,12 @@
 namespace peelray {
 namespace {
 
-struct Case {
+struct SceneCase {
     std::string name;
     std::vector<std::string> words;  ///< the scene and options
 };
 
-class Agreement : public ProgramTest, public testing::WithParamInterface<Case> {
+class Agreement : public ProgramTest, public testing::WithParamInterface<SceneCase> {
 protected:
     /// The file, or a copy of it beside textures of our own where its own are missing: the generator's cases come
     /// without.
@@ -67,25 +67,25 @@ TEST_P(Agreement, WithTheReference) {
 INSTANTIATE_TEST_SUITE_P(
     Still, Agreement,
     testing::Values(
-        Case{"teapots", {"builtin:teapots", "--ldc", "1024"}}, Case{"glass", {"builtin:glass", "--ldc", "768"}},
-        Case{"tree", {"builtin:tree", "--ldc", "1024"}}, Case{"leaves", {"builtin:leaves", "--ldc", "1024"}},
-        Case{"leaves_samples",
+        SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}}, SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
+        SceneCase{"tree", {"builtin:tree", "--ldc", "1024"}}, SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
+        SceneCase{"leaves_samples",
              {"builtin:leaves", "--ldc", "1024", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}},
-        Case{"blob", {"builtin:blob:20000", "--ldc", "512"}},
-        Case{"samples",
+        SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
+        SceneCase{"samples",
              {"builtin:teapots", "--ldc", "512", "--spp", "3", "--effects", "reflection,refraction,shadow,ambient"}},
-        Case{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}},
-        Case{"car", {"meshes/car2.glb", "--floor", "--ldc", "512"}},
-        Case{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "768"}}),
+        SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}},
+        SceneCase{"car", {"meshes/car2.glb", "--floor", "--ldc", "512"}},
+        SceneCase{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "768"}}),
     [](const auto& info) { return info.param.name; });
 
 /// Several moments of each scene that moves: over the floor that mirrors a little, so that what moves is seen by rays.
-std::vector<Case> moments() {
-    std::vector<Case> cases;
+std::vector<SceneCase> moments() {
+    std::vector<SceneCase> cases;
     const auto add = [&](const std::string& name, const std::vector<const char*>& times,
                          const std::vector<std::string>& words) {
         for (const char* time : times) {
-            Case c{fmt::format("{}_{}", name, cases.size()), words};
+            SceneCase c{fmt::format("{}_{}", name, cases.size()), words};
             c.words.insert(c.words.end(), {"--time", time, "--ldc", "512"});
             cases.push_back(c);
         }

@@ -65,6 +65,7 @@ inline Running start_program(const std::vector<std::string>& arguments, const st
     running.process = ::fork();
     if (running.process == 0) {
         if (own_group) ::setpgid(0, 0);
+        ::signal(SIGINT, SIG_DFL);  // who runs the tests in the background has it ignored
         ::setenv("XDG_CACHE_HOME", PEELRAY_CACHE, 1);
         for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
         const int flags = O_WRONLY | O_CREAT | O_TRUNC;

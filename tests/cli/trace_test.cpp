@@ -160,7 +160,7 @@ TEST_F(TraceCommand, PlanarFindsTheSameFaces) {
 }
 
 TEST_F(TraceCommand, ByPixelTheHitsAreTheSame) {
-    for (const std::vector<std::string> options : {std::vector<std::string>{"--traversal", "two-level"},
+    for (const std::vector<std::string>& options : {std::vector<std::string>{"--traversal", "two-level"},
                                                    {"--traversal", "mipmap"},
                                                    {"--traversal", "two-level", "--block", "2x32", "--batch", "layers"},
                                                    {"--traversal", "mipmap", "--batch", "rays"}}) {

@@ -22,10 +22,10 @@ namespace {
 
 using Hdr = TempFolder;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 const float nan = std::numeric_limits<float>::quiet_NaN();
 
-Image pattern(uint32_t width, uint32_t height) {
+Image hdr_pattern(uint32_t width, uint32_t height) {
     Image image{width, height, {}};
     for (uint32_t i = 0; i < width * height; ++i)
         image.pixels.emplace_back(float(i) * 0.37f, 1e-3f * float(i % 13), 1000.0f / float(i + 1), 1);
@@ -69,14 +69,14 @@ void write_exr(const std::filesystem::path& path, const Imath::Box2i& window, co
 
 TEST_F(Hdr, RadianceKeepsEightBits) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 3u}, {8u, 1u}, {300u, 5u}}) {
-        const Image image = pattern(width, height);
+        const Image image = hdr_pattern(width, height);
         write_hdr(folder / "a.hdr", image);
         expect_close(image, read_hdr(folder / "a.hdr"), 1 / 128.0f);
     }
 }
 
 TEST_F(Hdr, ExrFloatIsExactAndHalfNearlySo) {
-    Image image = pattern(31, 9);
+    Image image = hdr_pattern(31, 9);
     write_hdr(folder / "half.EXR", image);
     expect_close(image, read_hdr(folder / "half.EXR"), 1 / 2048.0f);
     image.at(3, 4) = {1e30f, 1e-30f, 70000, 0.25f};
@@ -86,7 +86,7 @@ TEST_F(Hdr, ExrFloatIsExactAndHalfNearlySo) {
 }
 
 TEST_F(Hdr, HalfClampsInsteadOfOverflowing) {
-    Image image{4, 1, {{65504, 65519, 65520, 0}, {1e30f, infinity, -1e30f, 1}, {0, -0.0f, 1e-9f, 1}, {1, 2, 3, 0.5f}}};
+    Image image{4, 1, {{65504, 65519, 65520, 0}, {1e30f, infinite, -1e30f, 1}, {0, -0.0f, 1e-9f, 1}, {1, 2, 3, 0.5f}}};
     write_hdr(folder / "a.exr", image);
     const Image read = read_hdr(folder / "a.exr");
     EXPECT_EQ(read.pixels[0], glm::vec4(65504, 65504, 65504, 0));
@@ -95,7 +95,7 @@ TEST_F(Hdr, HalfClampsInsteadOfOverflowing) {
 }
 
 TEST_F(Hdr, RadianceTakesNoNonsense) {
-    write_hdr(folder / "a.hdr", Image{3, 1, {{nan, -1, 2, 1}, {infinity, 1, 1, 1}, {3e38f, 0, 0, 1}}});
+    write_hdr(folder / "a.hdr", Image{3, 1, {{nan, -1, 2, 1}, {infinite, 1, 1, 1}, {3e38f, 0, 0, 1}}});
     const Image read = read_hdr(folder / "a.hdr");
     EXPECT_NEAR(read.pixels[0].z, 2, 0.02f);
     EXPECT_EQ(read.pixels[0].x, 0);
@@ -104,7 +104,7 @@ TEST_F(Hdr, RadianceTakesNoNonsense) {
 }
 
 TEST_F(Hdr, ReadingSanitises) {
-    write_hdr(folder / "a.exr", Image{2, 1, {{nan, infinity, -infinity, nan}, {-1, 5, 1e30f, 1}}}, true);
+    write_hdr(folder / "a.exr", Image{2, 1, {{nan, infinite, -infinite, nan}, {-1, 5, 1e30f, 1}}}, true);
     const Image read = read_hdr(folder / "a.exr");
     EXPECT_EQ(read.pixels[0], glm::vec4(0, 65504, 0, 0));
     EXPECT_EQ(read.pixels[1], glm::vec4(0, 5, 1e30f, 1));
@@ -177,14 +177,14 @@ TEST_F(Hdr, RefusesWhatIsNeitherFormat) {
     expect_error([&] { read_hdr(folder); }, "Is a directory");
     expect_error([&] { read_hdr(put("a.exr", "")); }, "empty");
     expect_error([&] { read_hdr(put("a.exr", "\x89PNG\r\n")); }, "neither");
-    expect_error([&] { write_hdr(folder / "a.png", pattern(1, 1)); }, "'.png'");
+    expect_error([&] { write_hdr(folder / "a.png", hdr_pattern(1, 1)); }, "'.png'");
     expect_error([&] { write_hdr(folder / "a.exr", Image{}); }, "empty");
-    expect_error([&] { write_hdr(folder / "no/a.hdr", pattern(1, 1)); }, "no folder");
+    expect_error([&] { write_hdr(folder / "no/a.hdr", hdr_pattern(1, 1)); }, "no folder");
 }
 
 TEST_F(Hdr, RefusesTruncatedFiles) {
     for (const char* name : {"a.exr", "a.hdr"}) {
-        write_hdr(folder / name, pattern(50, 20));
+        write_hdr(folder / name, hdr_pattern(50, 20));
         const std::string whole = get(folder / name);
         for (size_t length = 1; length < whole.size(); length += length < 600 ? 7 : 101)
             expect_error([&] { read_hdr(put("cut", whole.substr(0, length))); }, "cannot read");
@@ -194,7 +194,7 @@ TEST_F(Hdr, RefusesTruncatedFiles) {
 
 TEST_F(Hdr, SurvivesFlippedBytes) {
     for (const char* name : {"a.exr", "a.hdr"}) {
-        write_hdr(folder / name, pattern(16, 16));
+        write_hdr(folder / name, hdr_pattern(16, 16));
         const std::string whole = get(folder / name);
         for (size_t i = 0; i < whole.size(); ++i) {
             std::string bytes = whole;
@@ -215,7 +215,7 @@ TEST_F(Hdr, RefusesHugeSizesBeforeReadingThem) {
     expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 99999999999999999999\n")); }, "size line");
     expect_error([&] { read_hdr(put("a.hdr", head + "-Y 0 +X 4\n")); }, "empty");
     expect_error([&] { read_hdr(put("a.hdr", head + "-Y 16384 +X 16384\n")); }, "row 1 of 16384");
-    write_hdr(folder / "a.exr", pattern(4, 4));
+    write_hdr(folder / "a.exr", hdr_pattern(4, 4));
     std::string exr = get(folder / "a.exr");
     const size_t window = exr.find("dataWindow") + 11 + 6 + 4;  // the name, the type "box2i", the size
     const int32_t corners[4] = {0, 0, 0x3fffff, 0x3fffff};
@@ -242,7 +242,7 @@ TEST_F(Hdr, ReadsRadianceByHand) {
 
 TEST_F(Hdr, WritesFloatChannels) {
     write_exr_channels(folder / "aov.exr", 3, 2, {"Z", "id"},
-                       {{1, 2, infinity, 4, 5, 1e30f}, {0, 1, 2, 3, 4, 16777215}});
+                       {{1, 2, infinite, 4, 5, 1e30f}, {0, 1, 2, 3, 4, 16777215}});
     Imf::InputFile file((folder / "aov.exr").c_str());
     ASSERT_NE(file.header().channels().findChannel("Z"), nullptr);
     EXPECT_EQ(file.header().channels().findChannel("id")->type, Imf::FLOAT);
@@ -252,7 +252,7 @@ TEST_F(Hdr, WritesFloatChannels) {
     buffer.insert("id", Imf::Slice::Make(Imf::FLOAT, id.data(), file.header().dataWindow(), 4, 12));
     file.setFrameBuffer(buffer);
     file.readPixels(0, 1);
-    EXPECT_EQ(z, (std::vector<float>{1, 2, infinity, 4, 5, 1e30f}));
+    EXPECT_EQ(z, (std::vector<float>{1, 2, infinite, 4, 5, 1e30f}));
     EXPECT_EQ(id[5], 16777215);
     expect_error([&] { write_exr_channels(folder / "b.exr", 0, 2, {"Z"}, {{}}); }, "empty");
     expect_error([&] { write_exr_channels("/proc/b.exr", 1, 1, {"Z"}, {{1}}); }, "/proc/b.exr");

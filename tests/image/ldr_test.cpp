@@ -7,14 +7,14 @@ namespace {
 
 using Ldr = TempFolder;
 
-Image8 pattern(uint32_t width, uint32_t height) {
+Image8 ldr_pattern(uint32_t width, uint32_t height) {
     Image8 image{width, height, {}};
     for (uint32_t i = 0; i < width * height; ++i) image.pixels.push_back(i * 2654435761u);
     return image;
 }
 
 TEST_F(Ldr, PngKeepsEveryByte) {
-    const Image8 image = pattern(17, 5);
+    const Image8 image = ldr_pattern(17, 5);
     write_png(folder / "a.png", image, true);
     const Image8 with = read_ldr(folder / "a.png");
     ASSERT_EQ(with.width, 17u);
@@ -36,14 +36,14 @@ TEST_F(Ldr, RefusesWhatIsNoImage) {
 }
 
 TEST_F(Ldr, RefusesTruncatedPngs) {
-    write_png(folder / "a.png", pattern(40, 40));
+    write_png(folder / "a.png", ldr_pattern(40, 40));
     const std::string whole = get(folder / "a.png");
     for (size_t length = 1; length < whole.size() - 12; length += 37)
         EXPECT_THROW(read_ldr(put("b.png", whole.substr(0, length))), Error) << length;
 }
 
 TEST_F(Ldr, RefusesHugeSizesBeforeReadingThem) {
-    write_png(folder / "a.png", pattern(4, 4));
+    write_png(folder / "a.png", ldr_pattern(4, 4));
     std::string bytes = get(folder / "a.png");
     const std::string huge("\x00\x00\xff\xff\x00\x00\xff\xff", 8);  // 65535 x 65535
     bytes.replace(16, 8, huge);
@@ -66,8 +66,8 @@ TEST_F(Ldr, RefusesATruncatedJpeg) {
 }
 
 TEST_F(Ldr, WritersSayWhyTheyCannot) {
-    expect_error([&] { write_png(folder / "no/a.png", pattern(2, 2)); }, "no folder");
-    expect_error([&] { write_png("/proc/a.png", pattern(2, 2)); }, "/proc/a.png");
+    expect_error([&] { write_png(folder / "no/a.png", ldr_pattern(2, 2)); }, "no folder");
+    expect_error([&] { write_png("/proc/a.png", ldr_pattern(2, 2)); }, "/proc/a.png");
     expect_error([&] { write_png(folder / "a.png", Image8{}); }, "empty");
     EXPECT_EQ(files(), 0u);
 }

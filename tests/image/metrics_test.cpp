@@ -1,5 +1,6 @@
 // PSNR, SSIM, the share of different pixels, error maps in colours, and what all comparisons refuse.
 #include "image/metrics.h"
+#include "base/infinity.h"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +10,6 @@
 
 namespace peelray {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The picture with `add` on one channel of one pixel.
 Image8 with(Image8 image, size_t pixel, int c, int add) {

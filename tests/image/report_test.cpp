@@ -1,5 +1,6 @@
 // The report as bytes; what a browser makes of it is tested in tests/report.
 #include "image/report.h"
+#include "base/infinity.h"
 
 #include <cmath>
 #include <limits>
@@ -128,7 +129,6 @@ TEST_F(Html, RefersToNothingOutside) {
 }
 
 TEST_F(Html, NeverRoundsToEqualWhatIsNot) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const ErrorMap map = ramp(7, 5);
     EXPECT_EQ(cells({30, 0.9, 0.1, 0.2, 0.5, map}),
               "<td>30.00 dB</td><td>0.9000</td><td>0.1000</td><td>0.2000</td><td>50.00 %</td>");

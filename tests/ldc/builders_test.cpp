@@ -16,13 +16,12 @@ using test::CpuRaster;
 using test::DecodedCube;
 using test::DecodedPixels;
 using test::from_scene;
+using test::kSnap;
 using test::Mesh3;
 using test::Random;
 using test::shrink;
 using test::soup;
 
-/// Graphics hardware rounds corners to 1/256 pixel, twice at most.
-constexpr double kSnap = 1.0 / 128;
 /// By how much ldcCovers reaches beyond an edge's line, at most.
 constexpr double kSlack = 1.5e-3;
 

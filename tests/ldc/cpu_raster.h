@@ -15,6 +15,9 @@ inline uint64_t pair_of(const CubeGrid& grid, const glm::uvec3& voxel, uint32_t 
     return uint64_t((voxel.z * grid.dims.y + voxel.y) * grid.dims.x + voxel.x) << 32 | id;
 }
 
+/// Graphics hardware rounds corners to 1/256 pixel, twice at most.
+constexpr double kSnap = 1.0 / 128;
+
 /// The plane of a triangle and where it lies, seen along one axis: corners (u, v, w) in voxels.
 struct SeenTriangle {
     std::array<glm::dvec3, 3> corners;

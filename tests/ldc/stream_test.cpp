@@ -21,10 +21,10 @@ using glm::vec2;
 using glm::vec3;
 using test::CpuRaster;
 using test::DecodedPixels;
+using test::kSnap;
 using test::Mesh3;
 
 constexpr uint32_t kLevel = 6, kRibbon = 1000;
-constexpr double kSnap = 1.0 / 128;
 
 float height(float x) {
     return 0.7f * x * (1 - x * x);

@@ -6,11 +6,10 @@
 #include <numbers>
 #include <random>
 
+#include "base/infinity.h"
 #include "reference/oracle.h"
 
 namespace peelray {
-
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline void add_triangle(Geometry& geometry, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     const auto first = uint32_t(geometry.positions.size());
@@ -56,9 +55,9 @@ inline Geometry sphere(uint32_t rows, const glm::vec3& center = glm::vec3(0), fl
     return geometry;
 }
 
-class Random {
+class RandomPoints {
   public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
+    explicit RandomPoints(uint64_t seed) : engine_(seed) {}
     double uniform(double low, double high) { return low + (high - low) * double(engine_() >> 11) * 0x1p-53; }
     glm::dvec3 point(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
     uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
@@ -70,7 +69,7 @@ class Random {
 /// Triangles of all sizes: ordinary ones, slivers, needles, axis-parallel ones, degenerate ones, copies of others.
 inline Geometry soup(uint32_t count, uint64_t seed, const glm::vec3& center = glm::vec3(0), float scale = 1) {
     Geometry geometry;
-    Random random(seed);
+    RandomPoints random(seed);
     const auto place = [&](const glm::dvec3& p) { return center + scale * glm::vec3(p); };
     for (uint32_t i = 0; i < count; ++i) {
         const glm::dvec3 a = random.point(1), along = random.point(0.3);

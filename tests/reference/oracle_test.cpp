@@ -12,7 +12,7 @@ namespace {
 const double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Rays through vertices, edges and triangles, along axes, in planes, from far away, with every length of direction.
-OracleRay random_ray(Random& random, const Geometry& geometry, const glm::dvec3& center, double scale) {
+OracleRay random_ray(RandomPoints& random, const Geometry& geometry, const glm::dvec3& center, double scale) {
     OracleRay ray{center + scale * random.point(1.5), 0, random.point(1), infinity};
     const glm::uvec3 t = geometry.triangles[random.below(uint32_t(geometry.triangles.size()))];
     const glm::dvec3 a(geometry.positions[t.x]), b(geometry.positions[t.y]), c(geometry.positions[t.z]);
@@ -81,7 +81,7 @@ TEST(Oracle, EqualsTheLoopOverAllTriangles) {
                           {glm::vec3(0), 1e18f}}) {
         const Geometry geometry = soup(800, 7, c.center, c.scale);
         const Oracle oracle(geometry);
-        Random random(11);
+        RandomPoints random(11);
         for (int i = 0; i < 10000; ++i) {
             SCOPED_TRACE(testing::Message() << "center " << c.center.x << ", scale " << c.scale << ", ray " << i);
             const OracleRay ray = random_ray(random, geometry, c.center, c.scale);
@@ -102,7 +102,7 @@ Scene with_holes(Geometry& geometry) {
     scene.materials[0].base_color_texture = 0;
     Texture texture;
     texture.width = texture.height = 16;
-    Random random(3);
+    RandomPoints random(3);
     for (int i = 0; i < 256; i++) texture.texels.push_back(uint32_t(128 + 127 * random.point(1).x) << 24);
     scene.textures.push_back(texture);
     geometry.materials.assign(geometry.triangles.size(), 0);
@@ -115,7 +115,7 @@ TEST(Oracle, HitsInHolesDoNotCount) {
     const Scene scene = with_holes(geometry);
     const AlphaTest alpha(scene, geometry);
     const Oracle oracle(geometry, alpha), opaque(geometry);
-    Random random(11);
+    RandomPoints random(11);
     size_t through = 0, hits = 0, asked = 0, refused = 0;
     for (int i = 0; i < 10000; ++i) {
         const OracleRay ray = random_ray(random, geometry, glm::vec3(0), 1);
@@ -171,7 +171,7 @@ TEST(Oracle, AnAnswerBesideAHolesEdgeIsRight) {
 TEST(Oracle, AgreesWithSignedVolumes) {
     const Geometry geometry = soup(300, 3);
     const Oracle oracle(geometry);
-    Random random(5);
+    RandomPoints random(5);
     using Vec = glm::vec<3, long double>;
     const auto volume = [](const Vec& a, const Vec& b, const Vec& c) { return glm::dot(glm::cross(a, b), c); };
     for (int i = 0; i < 10000; ++i) {
@@ -249,7 +249,7 @@ TEST(Oracle, TheRangeIsOpen) {
 TEST(Oracle, CubeInClosedForm) {
     const Oracle oracle(cube());
     EXPECT_DOUBLE_EQ(oracle.diagonal(), std::sqrt(12.0));
-    Random random(1);
+    RandomPoints random(1);
     for (int i = 0; i < 20000; ++i) {
         const OracleRay ray{random.point(4), 0, random.point(1), infinity};
         double first = -infinity, last = infinity;
@@ -270,7 +270,7 @@ TEST(Oracle, CubeInClosedForm) {
 TEST(Oracle, AClosedMeshIsWatertight) {
     const Geometry mesh = sphere(40);
     const Oracle oracle(mesh);
-    Random random(2);
+    RandomPoints random(2);
     for (int i = 0; i < 30000; ++i) {
         const glm::uvec3 t = mesh.triangles[random.below(uint32_t(mesh.triangles.size()))];
         const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]);
@@ -305,7 +305,7 @@ TEST(Oracle, DistantOriginsKeepTheirAim) {
 TEST(Oracle, EqualsTheLoopOnAFineMesh) {
     const Geometry mesh = sphere(120);
     const Oracle oracle(mesh);
-    Random random(8);
+    RandomPoints random(8);
     for (int i = 0; i < 500; ++i) {
         SCOPED_TRACE(i);
         expect_as_brute_force(mesh, oracle, random_ray(random, mesh, {}, 1), ~0u);
@@ -357,7 +357,7 @@ TEST(Oracle, ManyThreadsGetTheSameAnswers) {
     const Oracle oracle(geometry);
     std::vector<OracleRay> rays;
     std::vector<OracleHit> expected;
-    Random random(4);
+    RandomPoints random(4);
     for (int i = 0; i < 5000; ++i) rays.push_back(random_ray(random, geometry, {}, 1));
     for (const OracleRay& ray : rays) expected.push_back(oracle.closest(ray));
     std::atomic<int> different{0};

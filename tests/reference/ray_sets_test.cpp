@@ -108,7 +108,9 @@ TEST_F(RaySetsTest, AmbientAndDiffuseRaysSpreadByTheCosine) {
     // Sample by sample, each from the same points as the others; no direction twice.
     std::set<std::tuple<float, float, float>> directions;
     for (size_t i = 0; i < diffuse.size(); i++) {
-        if (on_floor(diffuse[i])) EXPECT_EQ(ambient[i].point, diffuse[i].point);
+        if (on_floor(diffuse[i])) {
+            EXPECT_EQ(ambient[i].point, diffuse[i].point);
+        }
         EXPECT_EQ(ambient[i].point, ambient[i + diffuse.size()].point);
     }
     for (const SurfaceRay& ray : ambient) directions.insert({ray.direction.x, ray.direction.y, ray.direction.z});

@@ -100,7 +100,7 @@ TEST(Verdict, FindsASliverBesideTheRay) {
 TEST(Verdict, SeparatesRoundingFromErrors) {
     const Geometry mesh = sphere(60);
     const Oracle oracle(mesh);
-    Random random(6);
+    RandomPoints random(6);
     size_t second_look = 0, wrong = 0, lies = 0;
     for (int i = 0; i < 20000; ++i) {
         const glm::uvec3 t = mesh.triangles[random.below(uint32_t(mesh.triangles.size()))];

@@ -5,7 +5,7 @@ namespace peelray {
 namespace {
 
 /// Every direction's light tells the direction.
-glm::dvec3 light_of(const glm::dvec3& d) {
+glm::dvec3 sky_light(const glm::dvec3& d) {
     return 0.5 + 0.4 * d;
 }
 Environment direction_image() {
@@ -14,7 +14,7 @@ Environment direction_image() {
     for (uint32_t y = 0; y < width / 2; y++)
         for (uint32_t x = 0; x < width; x++)
             pixels.push_back(glm::vec4(
-                glm::vec3(light_of(glm::dvec3(environment_direction((x + 0.5f) / width, (y + 0.5f) / (width / 2))))),
+                glm::vec3(sky_light(glm::dvec3(environment_direction((x + 0.5f) / width, (y + 0.5f) / (width / 2))))),
                 1));
     return image_environment(width, width / 2, pixels);
 }
@@ -86,7 +86,7 @@ TEST_F(CubemapTracerTest, ProbesSeeThroughHoles) {
     EXPECT_GT(through, 1500u);
     EXPECT_GT(onto, 1500u);
     // Texels blur the outlines of the holes.
-    tally(cubemap(stage, black, settings), traced, 0.02).expect(0.06, 96 * 96);
+    tally(cubemap(stage, black, settings), traced, 0.02).expect(0.08, 96 * 96);
 }
 
 TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
@@ -200,8 +200,8 @@ TEST_F(CubemapTracerTest, GlassBendsOnce) {
         if (d < 0.05) return {};
         const glm::dvec3 n = ray.origin + (-b - std::sqrt(d)) * ray.direction;
         const double cosine = -glm::dot(n, ray.direction), r = fresnel(cosine, 1, 1.5);
-        return r * light_of(glm::reflect(ray.direction, n)) +
-               (1 - r) * absorbed * light_of(glm::refract(ray.direction, n, 1 / 1.5));
+        return r * sky_light(glm::reflect(ray.direction, n)) +
+               (1 - r) * absorbed * sky_light(glm::refract(ray.direction, n, 1 / 1.5));
     }).expect(0, 3000);
     // A thin wall lets everything straight through.
     Stage pane;
@@ -285,20 +285,24 @@ TEST_F(CubemapTracerTest, WithoutBouncesOnlyShadowsRemain) {
     EXPECT_GT(picture.stats.maps.shadows.maps, 0u);
 }
 
-TEST_F(CubemapTracerTest, HundredsOfMirrors) {
+TEST_F(CubemapTracerTest, ManyMirrorsShareTheRoom) {
+    // Their probes in the usual size would be more than Mesa's software driver binds at once.
     Stage stage;
     stage.add(ground(40), lambert({0.5f, 0.5f, 0.5f}));
-    for (int i = 0; i < 225; i++)
-        stage.add(sphere({float(i % 15) * 2 - 14, 1, float(i / 15) * 2 - 14}, 0.8f, 3), plane_mirror());
-    RenderSettings settings = settings_for(perspective({0, 20, 30}, {0, 0, 0}, 50), 96);
+    for (int i = 0; i < 49; i++)
+        stage.add(sphere({float(i % 7) * 4 - 12, 1, float(i / 7) * 4 - 12}, 1.6f, 3), plane_mirror());
+    RenderSettings settings = settings_for(perspective({0, 20, 30}, {0, 0, 0}, 50), 160);
     settings.bounces = 1;
     const RenderResult picture = cubemap(stage, white, settings);
     const CubeMaps::Stats& maps = picture.stats.maps;
-    EXPECT_EQ(maps.probes, 225u);
+    EXPECT_EQ(maps.probes, 49u);
     EXPECT_EQ(maps.left_out, 0u);
-    EXPECT_GE(maps.face, 32u);
-    EXPECT_EQ(maps.probe_bytes, 225ull * 6 * maps.face * maps.face * 8);
-    EXPECT_LE(maps.probe_bytes, device().limits().maxStorageBufferRange);
+    EXPECT_EQ(maps.probe_bytes, 49ull * 6 * maps.face * maps.face * 8);
+    const uint64_t room = device().limits().maxStorageBufferRange;
+    EXPECT_LE(maps.probe_bytes, room);
+    // A face as fine as the picture, or the next finer one has no room.
+    EXPECT_LE(maps.face, 256u);
+    EXPECT_TRUE(maps.face == 256u || 4 * maps.probe_bytes > room) << maps.face;
     for (const glm::vec4& p : picture.radiance) ASSERT_GT(p.x, 0.05f);
 }
 

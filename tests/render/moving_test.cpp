@@ -1,5 +1,5 @@
-// Pictures of scenes that move: nothing is left of the moments before, only what must be is rebuilt, and what moves is in the
-// mirror of the same frame.
+// Pictures of scenes that move: nothing is left of the moments before, only what must be is rebuilt, and what moves is
+// in the mirror of the same frame.
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
@@ -69,14 +69,19 @@ Scene three_balls() {
     for (const vec3& p : soft.positions) soft.targets[0].positions.push_back(vec3(0.4f * p.x, 1.2f * p.y, 0));
     const int morphing = add(std::move(soft), 2, {1.5f, 1.3f, 0});
     add(sphere({0, 0, 0}, 0.4f, 10), 3, {0, 0.5f, -1});
-    scene.animations.push_back({"both",
-                                2,
-                                {{moving, Path::translation, AnimationChannel::Interpolation::linear, 3, {0, 2},
-                                  {-1.5f, 0.6f, 0, 0.5f, 1.6f, 1}},
-                                 {morphing, Path::weights, AnimationChannel::Interpolation::linear, 1, {0, 1, 2}, {0, 1, 0}}}});
+    scene.animations.push_back(
+        {"both",
+         2,
+         {{moving,
+           Path::translation,
+           AnimationChannel::Interpolation::linear,
+           3,
+           {0, 2},
+           {-1.5f, 0.6f, 0, 0.5f, 1.6f, 1}},
+          {morphing, Path::weights, AnimationChannel::Interpolation::linear, 1, {0, 1, 2}, {0, 1, 0}}}});
     return scene;
 }
-const Camera kView = [] {
+const Camera kUsualView = [] {
     Camera camera;
     camera.eye = {0.5f, 2, 5};
     camera.look = {0, 0.5f, 0};
@@ -92,8 +97,9 @@ TEST_F(MovingTest, AFrameIsTheSameAloneAndAfterOthers) {
                           Case{"builtin:waves:800", {0.2, 0.9, 0.5}}, Case{"builtin:particles:200", {0, 1.3, 4}}})
         for (const HitTest hit : {HitTest::exact, HitTest::planar}) {
             SCOPED_TRACE(c.name);
-            Scene scene = *c.name ? load_scene(c.name) : three_balls(), other = *c.name ? load_scene(c.name) : three_balls();
-            const RenderSettings settings = small(scene.cameras.empty() ? kView : scene.cameras[0], hit);
+            Scene scene = *c.name ? load_scene(c.name) : three_balls(),
+                  other = *c.name ? load_scene(c.name) : three_balls();
+            const RenderSettings settings = small(scene.cameras.empty() ? kUsualView : scene.cameras[0], hit);
             const auto renderer = renderer_in(scene, "0", c.times.back(), sky);
             std::vector<RenderResult> first;
             for (const double time : c.times) first.push_back(at(*renderer, scene, "0", time, settings));
@@ -114,7 +120,7 @@ TEST_F(MovingTest, AFrameIsTheSameAloneAndAfterOthers) {
 TEST_F(MovingTest, OnlyWhatChangesItsShapeIsRebuilt) {
     Scene scene = three_balls();
     const auto renderer = renderer_in(scene, "0", 0, sky);
-    const RenderSettings settings = small(kView);
+    const RenderSettings settings = small(kUsualView);
     const RenderStats first = renderer->render(settings).stats;
     // The floor with the ball that stands on it (or apart), the ball that moves, the one that morphs.
     EXPECT_GE(first.cubes.bodies, 3u);
@@ -136,7 +142,7 @@ TEST_F(MovingTest, OnlyWhatChangesItsShapeIsRebuilt) {
 TEST_F(MovingTest, RebuildingEverythingChangesNoPicture) {
     for (const char* name : {"", "builtin:waves:800"}) {
         Scene scene = *name ? load_scene(name) : three_balls();
-        RenderSettings settings = small(scene.cameras.empty() ? kView : scene.cameras[0]);
+        RenderSettings settings = small(scene.cameras.empty() ? kUsualView : scene.cameras[0]);
         settings.ldc = 64;  // automatic resolutions are others where everything is rebuilt
         const auto renderer = renderer_in(scene, "0", 0.7, sky);
         const RenderResult kept = renderer->render(settings);
@@ -146,11 +152,12 @@ TEST_F(MovingTest, RebuildingEverythingChangesNoPicture) {
 }
 
 TEST_F(MovingTest, AMomentLooksLikeTheSameSceneStandingStill) {
-    // The mirror image and the shadow of what moves are those of this frame: the picture is that of the flattened scene.
+    // The mirror image and the shadow of what moves are those of this frame: the picture is that of the flattened
+    // scene.
     for (const double time : {0.4, 1.2, 2.0}) {
         Scene scene = three_balls();
         const auto renderer = renderer_in(scene, "0", 0, sky);
-        RenderSettings settings = small(kView);
+        RenderSettings settings = small(kUsualView);
         settings.width = settings.height = 96;
         renderer->render(settings);
         const RenderResult moved = at(*renderer, scene, "0", time, settings);
@@ -193,7 +200,7 @@ TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
                 for (const vec3& p : primitive.positions) primitive.uvs.emplace_back(p.x + 0.3f * p.z, p.y);
             }
         const auto renderer = renderer_in(scene, "0", 0, sky);
-        RenderSettings settings = small(kView, hit);
+        RenderSettings settings = small(kUsualView, hit);
         settings.width = settings.height = 96;
         if (hit == HitTest::planar) settings.ldc = 256;
         const RenderResult moved = at(*renderer, scene, "0", 1.2, settings);
@@ -212,7 +219,8 @@ TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
 }
 
 TEST_F(MovingTest, HundredsOfFramesLoseNothingAndKeepNoMemory) {
-    // A soup that spreads and draws together again: its samples, nodes and cells grow and shrink by orders of magnitude.
+    // A soup that spreads and draws together again: its samples, nodes and cells grow and shrink by orders of
+    // magnitude.
     Scene scene;
     scene.name = "soup";
     scene.materials = {metal("mirror", vec3(0.9f))};
@@ -286,7 +294,7 @@ TEST_F(MovingTest, LightsAndCamerasGoWithTheirNodes) {
     scene.nodes[1].light = 0;
     scene.nodes[1].mesh = -1;  // a lamp in place of the ball
     const auto renderer = renderer_in(scene, "0", 0, black);
-    RenderSettings settings = small(kView);
+    RenderSettings settings = small(kUsualView);
     const RenderResult before = renderer->render(settings), after = at(*renderer, scene, "0", 2, settings);
     size_t different = 0;
     for (size_t i = 0; i < before.radiance.size(); i++) different += before.radiance[i] != after.radiance[i];
@@ -298,7 +306,7 @@ TEST_F(MovingTest, LightsAndCamerasGoWithTheirNodes) {
 TEST_F(MovingTest, TheBaselinesMoveToo) {
     Scene scene = three_balls();
     for (const Tracer tracer : {Tracer::cubemap, Tracer::none}) {
-        RenderSettings settings = small(kView);
+        RenderSettings settings = small(kUsualView);
         settings.tracer = tracer;
         const auto renderer = renderer_in(scene, "0", 0, sky);
         renderer->render(settings);

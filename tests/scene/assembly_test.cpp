@@ -1,4 +1,5 @@
-// Scenes taken apart: put together again they are what flatten() gives, and only what changes its shape has to be rebuilt.
+// Scenes taken apart: put together again they are what flatten() gives, and only what changes its shape has to be
+// rebuilt.
 #include "scene/assembly.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +67,8 @@ void expect_whole(const Scene& scene, const Assembly& assembly, double tolerance
     for (uint32_t i = 0; i < geometry.objects.size(); i++)
         for (uint32_t k = 0; k < geometry.objects[i].count; k++) owners[geometry.objects[i].first + k] = i;
     for (const Assembly::Instance& instance : assembly.instances) {
-        const glm::mat4 to_world = instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset;
+        const glm::mat4 to_world =
+            instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset;
         const bool mirrored = glm::determinant(glm::dmat3(to_world)) < 0;
         const Assembly::Body& body = assembly.bodies[instance.body];
         for (uint32_t t = body.first_triangle; t < body.first_triangle + body.triangles; t++) {
@@ -302,7 +304,7 @@ TEST(Assembly, OfModelsIsTheScene) {
                 // At rest nothing deforms; moved, what does is compared elsewhere.
                 const Assembly now = which.empty() ? assembly : Assembly(assembly);
                 expect_whole(scene, now, 1e-5 * glm::length(geometry.upper - geometry.lower) + 1e-6);
-                if (testing::Test::HasFatalFailure()) return;
+                if (::testing::Test::HasFatalFailure()) return;
             }
             compared++;
         }
