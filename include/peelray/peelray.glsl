@@ -424,53 +424,39 @@ void peelrayTraceInstance(uint instance, PeelrayRay ray, uvec2 skip, PeelrayOpti
 #endif
 }
 
-/// A ray's way through the instances whose boxes it meets.
-struct PeelrayVisit {
-    uint word;    ///< what is left of a group of boxes, as peelrayMeet gives it
-    bool enters;  ///< the group's boxes are not yet known
-    uint level, group;                   ///< in the hierarchy
-    uint waiting[PEELRAY_TREE_LEVELS];   ///< what is left of its higher levels
-};
-
-PeelrayVisit peelrayBegin(PeelrayTree tree, PeelrayOptions options) {
-    PeelrayVisit visit;
-    visit.word = 0u;
-    visit.enters = true;
-    visit.level = options.instances == 0u ? tree.levels - 1u : 0u;
-    visit.group = 0u;
-    return visit;
-}
-
-/// The next instance of the walk, nearest box first, which lies no farther than the hit so far; false: there is none.
-bool peelrayNext(PeelrayTree tree, PeelrayRay ray, vec3 inv, PeelrayHit hit, PeelrayOptions options, inout PeelrayVisit visit,
-                 out uint instance) {
-    instance = 0u;
-    const uint most = options.instances == 0u ? 8u : options.instances;
+/// Walks the hierarchy over any number of instances, nearest first.
+void peelrayTraceTree(PeelrayTree tree, PeelrayRay ray, vec3 inv, uvec2 skip, PeelrayOptions options, inout PeelrayHit hit) {
+    uint waiting[PEELRAY_TREE_LEVELS];  // what is left of the higher levels, as peelrayMeet gives it
+    uint level = tree.levels - 1u, group = 0u;
+    bool enters = true;
+    uint word = 0u;
     while (true) {
-        if (visit.enters) visit.word = peelrayMeet(tree.first[visit.level] + visit.group * 8u, most, ray.origin, inv, ray.tmin, hit.t);
-        visit.enters = false;
-        if ((visit.word >> 24u) == 0u) {
-            if (options.instances != 0u || ++visit.level >= tree.levels) return false;
-            visit.word = visit.waiting[visit.level];
-            visit.group >>= 3u;
+        if (enters) word = peelrayMeet(tree.first[level] + group * 8u, 8u, ray.origin, inv, ray.tmin, hit.t);
+        enters = false;
+        if ((word >> 24u) == 0u) {
+            level++;
+            if (level >= tree.levels) break;
+            word = waiting[level];
+            group >>= 3u;
             continue;
         }
-        const uint index = visit.group * 8u + (visit.word & 7u);
-        visit.word = ((visit.word >> 24u) - 1u) << 24u | (visit.word >> 3u & 0x1fffffu);
-        const PeelrayBox box = PEELRAY_BOX(tree.first[visit.level] + index);
+        const uint index = group * 8u + (word & 7u);
+        word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu);
+        const PeelrayBox box = PEELRAY_BOX(tree.first[level] + index);
         // A hit found in between may lie before it; then it lies before all that are left of this group.
-        if (hit.triangle != PEELRAY_MISS && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) {
-            visit.word = 0u;
+        if (peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) {
+            word = 0u;
             continue;
         }
-        if (visit.level == 0u) {
-            instance = box.instance;
-            return true;
+        if (level > 0u) {
+            waiting[level] = word;
+            level--;
+            group = index;
+            enters = true;
+            continue;
         }
-        visit.waiting[visit.level] = visit.word;
-        visit.level--;
-        visit.group = index;
-        visit.enters = true;
+        peelrayTraceInstance(box.instance, ray, skip, options, hit);
+        if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
     }
 }
 
@@ -486,13 +472,19 @@ PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOpt
     PeelrayHit hit = miss;
     hit.t = ray.tmax;
     const vec3 inv = peelrayInverse(ray.direction);
-    const bool single = options.instances == 1u;
-    PeelrayVisit visit = peelrayBegin(tree, options);
-    uint instance = 0u;
-    // One place for all, for drivers read what is called as often as it is called.
-    while (single || peelrayNext(tree, ray, inv, hit, options, visit, instance)) {
-        peelrayTraceInstance(instance, ray, skip, options, hit);
-        if (single || (options.any_hit && hit.triangle != PEELRAY_MISS)) break;
+    if (options.instances == 1u) {
+        peelrayTraceInstance(0u, ray, skip, options, hit);
+    } else if (options.instances != 0u) {
+        uint word = peelrayMeet(tree.first[0], options.instances, ray.origin, inv, ray.tmin, hit.t);
+        for (; (word >> 24u) != 0u; word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu)) {
+            const PeelrayBox box = PEELRAY_BOX(tree.first[0] + (word & 7u));
+            // A hit found in between may lie before it; then it lies before all that are left.
+            if (hit.triangle != PEELRAY_MISS && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) break;
+            peelrayTraceInstance(box.instance, ray, skip, options, hit);
+            if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
+        }
+    } else {
+        peelrayTraceTree(tree, ray, inv, skip, options, hit);
     }
     hit.t = hit.triangle == PEELRAY_MISS ? infinity : hit.t * scale;
     return hit;
