@@ -195,8 +195,10 @@ Json render_stats(const Device& device, const RenderResult& result, uint64_t tri
     double trace_ms = 0, shadow_ms = 0;
     for (const auto& pass : s.passes) {
         json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
-        if (pass.name == "trace" || pass.name == "trace_pixels" || pass.name == "trace_four" || pass.name == "trace_khr") trace_ms = pass.ms;
-        if (pass.name.starts_with("trace_shadow")) shadow_ms = pass.ms;
+        if (pass.name.starts_with("trace_shadow"))
+            shadow_ms = pass.ms;
+        else if (pass.name.starts_with("trace"))
+            trace_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
     json["rays"] = ray_stats(result.rays);

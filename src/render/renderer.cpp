@@ -400,7 +400,8 @@ void Renderer::Impl::record_shadows() {
                     {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
                      scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances),
                      device.immediate, counter != nullptr});
-    commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
+    commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(),
+                          PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }
 
 /// Traces and shades the levels of the tree of rays, then all their shadow rays, and gathers the light. Where a queue

@@ -12,7 +12,7 @@ struct SceneCase {
 };
 
 class Agreement : public ProgramTest, public testing::WithParamInterface<SceneCase> {
-protected:
+  protected:
     /// The file, or a copy of it beside textures of our own where its own are missing: the generator's cases come
     /// without.
     std::string with_textures(const std::string& file) {
@@ -66,17 +66,20 @@ TEST_P(Agreement, WithTheReference) {
 // default.
 INSTANTIATE_TEST_SUITE_P(
     Still, Agreement,
-    testing::Values(
-        SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}}, SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
-        SceneCase{"tree", {"builtin:tree", "--ldc", "1024"}}, SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
-        SceneCase{"leaves_samples",
-             {"builtin:leaves", "--ldc", "1024", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}},
-        SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
-        SceneCase{"samples",
-             {"builtin:teapots", "--ldc", "512", "--spp", "3", "--effects", "reflection,refraction,shadow,ambient"}},
-        SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}},
-        SceneCase{"car", {"meshes/car2.glb", "--floor", "--ldc", "512"}},
-        SceneCase{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "768"}}),
+    testing::Values(SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}},
+                    SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
+                    SceneCase{"tree", {"builtin:tree", "--ldc", "1024"}},
+                    SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
+                    SceneCase{"leaves_samples",
+                              {"builtin:leaves", "--ldc", "1024", "--spp", "2", "--effects",
+                               "reflection,refraction,shadow,ambient"}},
+                    SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
+                    SceneCase{"samples",
+                              {"builtin:teapots", "--ldc", "512", "--spp", "3", "--effects",
+                               "reflection,refraction,shadow,ambient"}},
+                    SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}},
+                    SceneCase{"car", {"meshes/car2.glb", "--floor", "--ldc", "512"}},
+                    SceneCase{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "768"}}),
     [](const auto& info) { return info.param.name; });
 
 /// Several moments of each scene that moves: over the floor that mirrors a little, so that what moves is seen by rays.
@@ -93,8 +96,7 @@ std::vector<SceneCase> moments() {
     const auto model = [](const std::string& file) {
         return std::vector<std::string>{"skinned/" + file, "--animation", "all", "--floor"};
     };
-    add("tiny", {"0", "0.4", "1.7"},
-        {"skinned/tiny.glb", "--animation", "Walk", "--floor"});
+    add("tiny", {"0", "0.4", "1.7"}, {"skinned/tiny.glb", "--animation", "Walk", "--floor"});
     add("CesiumMan", {"0.7", "1.5"}, model("CesiumMan.glb"));
     add("RiggedFigure", {"0.2", "1"}, model("RiggedFigure.glb"));
     add("MorphCube", {"1.3", "3.1"}, model("AnimatedMorphCube.glb"));
@@ -108,16 +110,17 @@ std::vector<SceneCase> moments() {
     add("swell", {"0.7"}, {"builtin:blob:8000"});
     return cases;
 }
-INSTANTIATE_TEST_SUITE_P(Moving, Agreement, testing::ValuesIn(moments()), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Moving, Agreement, testing::ValuesIn(moments()),
+                         [](const auto& info) { return info.param.name; });
 
 TEST_F(ProgramTest, NormalsInTheTrianglesPlaneLookTheSame) {
-    // A wall, turned by 60 degrees about the vertical, whose normals lie in it: which side they are on is a matter of rounding.
+    // A wall, turned by 60 degrees about the vertical, whose normals lie in it: which side they are on is a matter of
+    // rounding.
     put("wall.obj",
-          "v -0.5 0 0.8660254\nv 0.5 0 -0.8660254\nv 0.5 2 -0.8660254\nv -0.5 2 0.8660254\n"
-          "vn -0.5 0 0.8660254\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
-    const Outcome run =
-        this->run({"compare", in("wall.obj"), "-o", out("r.html"), "--json", out("r.json"), "--size", "100x80",
-                   "--tracers", "ldc,reference", "--eye", "4,1.5,2", "--floor"});
+        "v -0.5 0 0.8660254\nv 0.5 0 -0.8660254\nv 0.5 2 -0.8660254\nv -0.5 2 0.8660254\n"
+        "vn -0.5 0 0.8660254\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+    const Outcome run = this->run({"compare", in("wall.obj"), "-o", out("r.html"), "--json", out("r.json"), "--size",
+                                   "100x80", "--tracers", "ldc,reference", "--eye", "4,1.5,2", "--floor"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_LE(nlohmann::json::parse(get(out("r.json")))["pictures"][0]["difference"]["share_different"], 0.001);
 }

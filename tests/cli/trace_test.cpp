@@ -160,10 +160,11 @@ TEST_F(TraceCommand, PlanarFindsTheSameFaces) {
 }
 
 TEST_F(TraceCommand, ByPixelTheHitsAreTheSame) {
-    for (const std::vector<std::string>& options : {std::vector<std::string>{"--traversal", "two-level"},
-                                                   {"--traversal", "mipmap"},
-                                                   {"--traversal", "two-level", "--block", "2x32", "--batch", "layers"},
-                                                   {"--traversal", "mipmap", "--batch", "rays"}}) {
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{"--traversal", "two-level"},
+          {"--traversal", "mipmap"},
+          {"--traversal", "two-level", "--block", "2x32", "--batch", "layers"},
+          {"--traversal", "mipmap", "--batch", "rays"}}) {
         SCOPED_TRACE(options.back());
         expect_known(trace(known_rays(), options));
     }

@@ -1,8 +1,8 @@
 // Writes a report of small pictures with known colours and numbers, for report_browser_test.py.
 #include <cstdio>
-#include <limits>
 
 #include "base/error.h"
+#include "base/infinity.h"
 #include "image/report.h"
 
 namespace peelray {
@@ -29,7 +29,6 @@ Difference difference(double psnr, double others, float map) {
 
 Report sample() {
     const Image8 red = plain(rgb(200, 30, 20)), blue = plain(rgb(20, 40, 200));
-    const double infinity = std::numeric_limits<double>::infinity();
     Report report;
     report.title = "Ünïcode </script><script>fail()</script> & \"quotes\" {{title}}";
     report.facts = {{"triangles", "56 066"}, {"device", "none <b>"}};

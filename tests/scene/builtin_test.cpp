@@ -282,7 +282,8 @@ TEST(Builtin, Bad) {
          {"builtin:", "builtin:nothing", "builtin:blob", "builtin:blob:", "builtin:blob:7", "builtin:blob:10000001",
           "builtin:blob:-8", "builtin:blob:1e6", "builtin:blob:99999999999999999999", "builtin:blob:12 "})
         error_of(name);
-    EXPECT_MENTIONS(error_of("builtin:nothing"), "teapots, glass, tree, leaves, room, walker, blob:N, waves, particles");
+    EXPECT_MENTIONS(error_of("builtin:nothing"),
+                    "teapots, glass, tree, leaves, room, walker, blob:N, waves, particles");
 }
 
 }  // namespace
