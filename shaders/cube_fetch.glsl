@@ -1,4 +1,4 @@
-// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9.
+// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9, FIRST + 48 and 49.
 #ifndef CUBE_FIRST_BINDING
 #define CUBE_FIRST_BINDING 0
 #endif
@@ -7,6 +7,10 @@ BUFFER(readonly, CUBE_FIRST_BINDING + 1, uint, node_table)
 BUFFER(readonly, CUBE_FIRST_BINDING + 2, uint, voxel_table)
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
 BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
+#ifndef PEELRAY_ONLY_PIXELS
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 48, uvec4, patches)
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 49, LdcCorners, corners)
+#endif
 BUFFER(readonly, CUBE_FIRST_BINDING + 5, vec3, positions)
 BUFFER(readonly, CUBE_FIRST_BINDING + 6, uvec3, triangles)
 BUFFER(readonly, CUBE_FIRST_BINDING + 7, GpuInstance, instances)
@@ -20,6 +24,7 @@ BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 9, PeelrayInstance, instance_cubes
 #define PEELRAY_VOXEL(i) voxel_table[i]
 #define PEELRAY_SAMPLE(i) samples[i]
 #define PEELRAY_SAMPLE_ID(i) sample_ids[i]
+#define PEELRAY_PATCH(i) patches[i]
 // By pixel the same bindings hold the offsets of the pixels and the ranges of the coarse levels.
 #define PEELRAY_OFFSET(i) node_table[i]
 #define PEELRAY_RANGE(i) uintBitsToFloat(uvec2(voxel_table[2u * (i)], voxel_table[2u * (i) + 1u]))
@@ -31,6 +36,7 @@ void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
     c = positions[corners.z];
 }
 #define PEELRAY_TRIANGLE(id, a, b, c) cubeTriangle(id, a, b, c)
+#define PEELRAY_CORNERS(id, a, b, c) ldcCornersOf(corners[id], a, b, c)
 
 /// Barycentric weights (second and third corner) of a hit at `p` on a sample: of the nearest point of the triangle's plane, moved
 /// into the triangle.

@@ -26,9 +26,11 @@ vec3 crossProduct(vec3 a, vec3 b) {
 }
 
 /// The box of the body's box, a little larger: rays are in it wherever rounding puts them into the cube.
-PeelrayBox boxOf(uint index, uint body, GpuTransform to_world, float voxel) {
+PeelrayBox boxOf(uint index, uint body, GpuTransform to_world, float voxel, bool tight) {
     const vec3 lower = orderedFloats(body_lower[body]), upper = orderedFloats(body_upper[body]);
     if (!(lower.x <= upper.x)) return NO_BOX;
+    // Nothing is rounded: a ray that leaves the body, which may be flat, does not meet its box again.
+    if (tight) return PeelrayBox(lower, index, upper, 0u);
     const vec3 middle = 0.5 * lower + 0.5 * upper, half_size = 0.5 * upper - 0.5 * lower + 0.5 * voxel;
     const mat3 size = mat3(abs(to_world.linear[0]), abs(to_world.linear[1]), abs(to_world.linear[2]));
     const vec3 at = to_world.linear * middle + to_world.position;
@@ -62,8 +64,13 @@ void main() {
     cube.inv_voxel = grid.inv_voxel;
     const uvec3 tops = grid.dims >> 4u;
     cube.tops = tops.x | tops.y << 10u | tops.z << 20u;
-    cube.corner = to_world.linear * grid.origin + to_world.position;
     cube.first_cell = bodies[info.body].first_cell;
+    const bool bare = (bodies[info.body].resolution & LDC_BARE) != 0u;
+    if (bare) {
+        cube.tops |= PEELRAY_BARE;
+        cube.first_cell = bodies[info.body].first_triangle | (bodies[info.body].triangles - 1u) << 30u;
+    }
+    cube.corner = to_world.linear * grid.origin + to_world.position;
     cube.origin = grid.origin;
     cube.moved = to_world.linear == mat3(1) && to_world.position == vec3(0) ? 0u : 1u;
     instance_cubes[i] = cube;
@@ -74,5 +81,6 @@ void main() {
     instance.mirrored = determinant < 0.0 ? 1u : 0u;
     instance.voxel = grid.voxel * size;
     instances[i] = instance;
-    instance_boxes[i] = boxOf(i, info.body, to_world, grid.voxel);
+    const uint slot = params.padded == 8u ? params.slots >> 4u * i & 15u : i;
+    instance_boxes[slot] = boxOf(i, info.body, to_world, grid.voxel, bare && cube.moved == 0u);
 }

@@ -50,11 +50,12 @@ bool ldcCaptured(vec3 n, uint axis, uint sampling) {
     return sampling == LDC_BAND && m[axis] >= LDC_OVERLAP * max(m.x, max(m.y, m.z));
 }
 
-LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint axis) {
+/// `a`, `b`, `c`: from the grid's origin, in the units of the body's space.
+LdcTriangle ldcProjectFrom(float inv_voxel, vec3 a, vec3 b, vec3 c, vec3 normal, uint axis) {
     LdcTriangle t;
-    t.a = peelrayToLdi((a - grid.origin) * grid.inv_voxel, axis);
-    t.b = peelrayToLdi((b - grid.origin) * grid.inv_voxel, axis);
-    t.c = peelrayToLdi((c - grid.origin) * grid.inv_voxel, axis);
+    t.a = peelrayToLdi(a * inv_voxel, axis);
+    t.b = peelrayToLdi(b * inv_voxel, axis);
+    t.c = peelrayToLdi(c * inv_voxel, axis);
     const vec3 n = peelrayToLdi(normal, axis);
     t.slope = clamp(-n.xy / n.z, vec2(-PEELRAY_SLOPE_RANGE), vec2(PEELRAY_SLOPE_RANGE));
     if (n.z < 0.0) {
@@ -63,6 +64,9 @@ LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint 
         t.c = swapped;
     }
     return t;
+}
+LdcTriangle ldcProject(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal, uint axis) {
+    return ldcProjectFrom(grid.inv_voxel, a - grid.origin, b - grid.origin, c - grid.origin, normal, axis);
 }
 
 /// Pixels [lo, hi] whose square the triangle's bounding rectangle touches; false: none inside the LDI.
@@ -105,6 +109,24 @@ ivec2 ldcDepthRange(LdcTriangle t, vec2 centre, uint sampling, float tolerance) 
     if (sampling == LDC_CONSERVATIVE)
         range = vec2(max(range.x, min(t.a.z, min(t.b.z, t.c.z))), min(range.y, max(t.a.z, max(t.b.z, t.c.z))));
     return ivec2(floor(range + vec2(-2.0 * LDC_SLACK, 2.0 * LDC_SLACK)));
+}
+
+/// Does a triangle that covers a voxel's pixel, and has the voxel in its depth range, touch the voxel? Conservative: what is left of the
+/// separating axes of triangle and box (Akenine-Möller, JGT 2001), those of the edges as they are seen along u and along v.
+bool ldcTouches(LdcTriangle t, vec3 centre) {
+    const float h = 0.5 + 2.0 * LDC_SLACK;
+    const vec3 e0 = t.b - t.a, e1 = t.c - t.b, e2 = t.a - t.c, to_a = centre - t.a, to_b = centre - t.b, to_c = centre - t.c;
+    // How far the voxel's centre is beside each edge, and the third corner: on whose side the triangle is decide these corners themselves,
+    // not the normal, for edges may be as short as the rounding of their ends.
+    precise vec3 u = vec3(e0.y * to_a.z - e0.z * to_a.y, e1.y * to_b.z - e1.z * to_b.y, e2.y * to_c.z - e2.z * to_c.y);
+    precise vec3 v = vec3(e0.z * to_a.x - e0.x * to_a.z, e1.z * to_b.x - e1.x * to_b.z, e2.z * to_c.x - e2.x * to_c.z);
+    precise vec3 corner_u = vec3(e0.z * e2.y - e0.y * e2.z, e1.z * e0.y - e1.y * e0.z, e2.z * e1.y - e2.y * e1.z);
+    precise vec3 corner_v = vec3(e0.x * e2.z - e0.z * e2.x, e1.x * e0.z - e1.z * e0.x, e2.x * e1.z - e2.z * e1.x);
+    const vec3 x = abs(vec3(e0.x, e1.x, e2.x)), y = abs(vec3(e0.y, e1.y, e2.y)), z = abs(vec3(e0.z, e1.z, e2.z));
+    const vec3 reach_u = h * (y + z), reach_v = h * (z + x);
+    // Written so that a NaN passes.
+    return !(any(lessThan(u, min(corner_u, 0.0) - reach_u)) || any(greaterThan(u, max(corner_u, 0.0) + reach_u)) ||
+             any(lessThan(v, min(corner_v, 0.0) - reach_v)) || any(greaterThan(v, max(corner_v, 0.0) + reach_v)));
 }
 
 /// Did the stages before the samples fit? Otherwise they are all redone.
@@ -182,37 +204,63 @@ uint ldcGrowBox(uvec2 mask, uint index) {
     return first | last << 6u;
 }
 
-/// The sample of a triangle in a voxel, as the traversal reads it (see peelrayMayHit); the `last` bit is still 0.
-uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling) {
-    const vec3 corner = peelrayToLdi(vec3(voxel), axis);
-    const vec2 centre = corner.xy + 0.5;
-    const float w = ldcDepth(t, centre) - corner.z;
+/// The plane's depth at the centre of the voxel's pixel, from the voxel's corner.
+float ldcDepthIn(LdcTriangle t, vec3 corner) { return ldcDepth(t, corner.xy + 0.5) - corner.z; }
+
+/// The normal (-slope, 1) of the plane along x, y, z as half floats: only the axis's own is 1.
+uvec3 ldcHalfNormal(vec2 slope, uint axis) {
+    // Rounded to nearest first: how packHalf2x16 rounds is left to the device.
+    uvec2 bits = floatBitsToUint(-slope);
+    bits = (bits + 0xfffu + (bits >> 13u & 1u)) & ~0x1fffu;
+    const uint ONE = 0x3c00u, uv = packHalf2x16(uintBitsToFloat(bits));
+    uvec2 halves = uvec2(uv & 0xffffu, uv >> 16u);
+    // The nearer one of its neighbours, 1 - 2^-11 and 1 + 2^-10.
+    if (halves.x == ONE) halves.x = -slope.x > 1.0 + 1.0 / 4096.0 ? ONE + 1u : ONE - 1u;
+    if (halves.y == ONE) halves.y = -slope.y > 1.0 + 1.0 / 4096.0 ? ONE + 1u : ONE - 1u;
+    return ldcFromLdi(uvec3(halves, ONE), axis);
+}
+
+/// The sample of a triangle in a voxel, as the traversal reads it (peelrayTraceVoxels). `last`: it ends its list.
+uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling, bool last) {
+    const float w = ldcDepthIn(t, peelrayToLdi(vec3(voxel), axis));
+    const uint end = last ? 1u << 31u : 0u;
+    if (sampling == LDC_CENTRE) return uvec2(floatBitsToUint(w), axis | end);
+    const uvec3 normal = ldcHalfNormal(t.slope, axis);
+    const uint w_bits = uint(clamp(round((w + 2.0) * (32767.0 / 5.0)), 0.0, 32767.0));
+    return uvec2(normal.x | normal.y << 16u, normal.z | w_bits << 16u | end);
+}
+
+/// The cells of a pixel's 4x4 grid where a triangle is, a bit each. Conservative: a cell counts when the triangle comes within 0.03
+/// pixels of it; the traversal asks for the cell only where it knows the place so well (PEELRAY_UNCERTAIN_PLACE).
+uint ldcCoverage(LdcTriangle t, vec2 corner) {
+    const float half_cell = 0.125 + 0.03;
+    const vec3 reach = ldcReach(t) * half_cell;
+    const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - half_cell, high = max(t.a.xy, max(t.b.xy, t.c.xy)) + half_cell;
+    const vec2 first = corner + 0.125;
+    // From cell to cell an edge function grows by a constant.
+    const vec2 e0 = (t.b.xy - t.a.xy) * 0.25, e1 = (t.c.xy - t.b.xy) * 0.25, e2 = (t.a.xy - t.c.xy) * 0.25;
+    vec3 row = ldcEdges(t, first) + reach;
     uint coverage = 0u;
-    if (sampling == LDC_CONSERVATIVE) {
-        // Conservative: a cell of the 4x4 grid counts when the triangle comes within 0.03 pixels of it: the traversal asks for the
-        // cell only where it knows the place so well (PEELRAY_UNCERTAIN_PLACE).
-        const float half_cell = 0.125 + 0.03;
-        const vec3 reach = ldcReach(t) * half_cell;
-        const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - half_cell, high = max(t.a.xy, max(t.b.xy, t.c.xy)) + half_cell;
-        const vec2 first = corner.xy + 0.125;
-        // From cell to cell an edge function grows by a constant.
-        const vec2 e0 = (t.b.xy - t.a.xy) * 0.25, e1 = (t.c.xy - t.b.xy) * 0.25, e2 = (t.a.xy - t.c.xy) * 0.25;
-        vec3 row = ldcEdges(t, first) + reach;
-        for (uint y = 0u; y < 4u; y++) {
-            const float v = first.y + float(y) * 0.25;
-            vec3 edges = row;
-            for (uint x = 0u; x < 4u; x++) {
-                const float u = first.x + float(x) * 0.25;
-                const bool inside = min(edges.x, min(edges.y, edges.z)) >= 0.0 && u >= low.x && u <= high.x && v >= low.y && v <= high.y;
-                coverage |= inside ? 1u << (y * 4u + x) : 0u;
-                edges -= vec3(e0.y, e1.y, e2.y);
-            }
-            row += vec3(e0.x, e1.x, e2.x);
+    for (uint y = 0u; y < 4u; y++) {
+        const float v = first.y + float(y) * 0.25;
+        vec3 edges = row;
+        for (uint x = 0u; x < 4u; x++) {
+            const float u = first.x + float(x) * 0.25;
+            const bool inside = min(edges.x, min(edges.y, edges.z)) >= 0.0 && u >= low.x && u <= high.x && v >= low.y && v <= high.y;
+            coverage |= inside ? 1u << (y * 4u + x) : 0u;
+            edges -= vec3(e0.y, e1.y, e2.y);
         }
+        row += vec3(e0.x, e1.x, e2.x);
     }
-    const uint w_bits = uint(clamp(round((w + 2.0) * (65535.0 / 5.0)), 0.0, 65535.0));
-    const ivec2 slope = ivec2(round(t.slope * (8191.0 / PEELRAY_SLOPE_RANGE)));
-    return uvec2(w_bits | coverage << 16u, (uint(slope.x) & 0x3fffu) | (uint(slope.y) & 0x3fffu) << 14u | axis << 28u);
+    return coverage;
+}
+
+/// The same of `exact` hits (peelrayMayHit). `id`: of the triangle, and the LDI's axis.
+uvec4 ldcPackPatch(LdcTriangle t, uvec3 voxel, uint id, bool last) {
+    const vec3 corner = peelrayToLdi(vec3(voxel), id & 3u);
+    const float w = ldcDepthIn(t, corner) - 0.5;
+    const uvec3 normal = ldcHalfNormal(t.slope, id & 3u);
+    return uvec4(normal.x | normal.y << 16u, normal.z | ldcCoverage(t, corner.xy) << 16u, (floatBitsToUint(w) & ~1u) | (last ? 1u : 0u), id);
 }
 
 #endif

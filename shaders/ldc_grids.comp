@@ -21,10 +21,11 @@ void main() {
         const bool valid = base + lane < params.bodies;
         uvec4 own = uvec4(0);
         if (valid) {
-            const CubeGrid grid = ldcMakeGrid(orderedFloats(body_lower[body]), orderedFloats(body_upper[body]), bodies[body].resolution);
+            const CubeGrid grid = ldcMakeGrid(orderedFloats(body_lower[body]), orderedFloats(body_upper[body]), bodies[body].resolution & ~LDC_BARE);
             const uvec3 tops = grid.dims >> 4u;
             own = uvec4(tops.y * tops.z, tops.z * tops.x, tops.x * tops.y, tops.x * tops.y * tops.z);
             if (params.by_pixel != 0u) own.w = 256u * (own.x + own.y + own.z);
+            if ((bodies[body].resolution & LDC_BARE) != 0u) own = uvec4(0);
             bodies[body].grid = grid;
             if (params.by_pixel == 0u && params.sampling == LDC_CENTRE && bodies[body].tolerance * grid.inv_voxel > LDC_FARTHEST_BY_VOXEL)
                 atomicOr(counters[0].wrapped, LDC_FAR_TOLERANCE);

@@ -38,9 +38,12 @@ uint ldcEmitPixel(LdcTriangle t, ivec2 pixel, uint id, LdcPlace place, bool writ
     }
     ivec2 range = ldcDepthRange(t, vec2(pixel) + 0.5, params.sampling, place.tolerance);
     range = clamp(range, ivec2(0), ivec2(int(dims[axis]) - 1));
-    if (write)
-        for (int w = range.x; w <= range.y; w++) {
-            const uint index = position + uint(w - range.x);
+    uint count = 0u;
+    for (int w = range.x; w <= range.y; w++) {
+        if (params.sampling == LDC_CONSERVATIVE && !ldcTouches(t, vec3(pixel, w) + 0.5)) continue;
+        const uint index = position + count;
+        count++;
+        if (write) {
             const uvec3 voxel = ldcFromLdi(uvec3(pixel, w), axis);
             const uint cell = place.first_cell + ldcTopIndex(voxel, dims), node = ldcNodeInTop(voxel);
             const uint word = cell * 2u + (node >> 5u), bit = 1u << (node & 31u);
@@ -48,7 +51,8 @@ uint ldcEmitPixel(LdcTriangle t, ivec2 pixel, uint id, LdcPlace place, bool writ
             if ((node_masks[word] & bit) == 0u) atomicOr(node_masks[word], bit);
             if (index < params.fragment_capacity) fragments[index] = LdcFragment(cell, id, node << 6u | ldcVoxelInNode(voxel));
         }
-    return uint(range.y - range.x + 1);
+    }
+    return count;
 }
 
 #endif

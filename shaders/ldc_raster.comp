@@ -2,9 +2,10 @@
 #version 460
 #include "common.glsl"
 #include "params.h"
-layout(local_size_x = 128) in;
+layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
 layout(constant_id = 1) const uint small_pixels = 48u;  // of a triangle's bounds that a thread goes through by itself
+layout(constant_id = 2) const bool keeps_corners = false;  // for `exact` hits
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
 BUFFER(readonly, 1, uvec3, triangles)
@@ -13,6 +14,7 @@ BUFFER(, 3, uint, node_masks)
 BUFFER(writeonly, 4, LdcFragment, fragments)
 BUFFER(writeonly, 5, uvec2, blocks)
 BUFFER(readonly, 6, LdcBody, bodies)
+BUFFER_ALIGNED(writeonly, 16, LdcCorners, corners)
 #define BASE_COLOR_FIRST_BINDING 7
 #include "base_color_buffers.glsl"
 #include "bounds.glsl"
@@ -22,6 +24,7 @@ BUFFER(readonly, 6, LdcBody, bodies)
 
 // Triangles that touch many blocks are cut by all threads of the workgroup.
 const uint LDC_MANY_BLOCKS = 16u;
+shared uint group_valid;  // has the workgroup anything to rasterise?
 shared uint many_count;
 shared uint many[3u * gl_WorkGroupSize.x];  // of a triangle in up to three LDIs
 
@@ -44,6 +47,18 @@ bool touchesMany(ivec2 lo, ivec2 hi) {
     return size.x * size.y > LDC_MANY_BLOCKS;
 }
 
+/// Is this a triangle, and no degenerate one, whose bounds hold no pixel's centre in any LDI? Most of a fine mesh are: they need not be
+/// projected.
+bool missesCentres(CubeGrid grid, vec3 a, vec3 b, vec3 c) {
+    const vec3 lower = (min(a, min(b, c)) - grid.origin) * grid.inv_voxel - (0.5 + 2.0 * LDC_SLACK);
+    const vec3 upper = (max(a, max(b, c)) - grid.origin) * grid.inv_voxel - (0.5 - 2.0 * LDC_SLACK);
+    const bvec3 holds = greaterThanEqual(floor(upper), ceil(lower));
+    if ((holds.x && holds.y) || (holds.y && holds.z) || (holds.z && holds.x)) return false;
+    const vec3 e = b - a, f = c - a, normal = abs(cross(e, f)), sizes = abs(e), other = abs(f);
+    return max(normal.x, max(normal.y, normal.z)) >
+           1e-5 * max(sizes.x, max(sizes.y, sizes.z)) * max(other.x, max(other.y, other.z));
+}
+
 /// Fragments of a small triangle: counted if `write` is false, else written from `position` on.
 uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace place, bool write, uint position) {
     uint count = 0u;
@@ -57,27 +72,35 @@ uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace 
 void main() {
     const uint id = params.first_triangle + GLOBAL_INDEX;
     bool valid = GLOBAL_INDEX < params.triangles && counters[0].cells <= params.cell_capacity;
-    const LdcPlace place = ldcPlaceOf(valid ? ldcBodyOfTriangle(id) : params.first_body);
+    const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body;
+    const LdcPlace place = ldcPlaceOf(body);
     const CubeGrid grid = place.grid;
     vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);
     if (valid) {
-        const uvec3 corners = triangles[id];
-        a = positions[corners.x];
-        b = positions[corners.y];
-        c = positions[corners.z];
+        const uvec3 indices = triangles[id];
+        a = positions[indices.x];
+        b = positions[indices.y];
+        c = positions[indices.z];
         if (!(isBounded(a) && isBounded(b) && isBounded(c))) {
             atomicAdd(counters[0].invalid, 1u);
             valid = false;
+        } else if (params.sampling != LDC_CONSERVATIVE && missesCentres(grid, a, b, c)) {
+            valid = false;
         } else {
             normal = ldcNormal(a, b, c, grid.inv_voxel);
+            if (keeps_corners) corners[id] = ldcPackCorners(a - grid.origin, b - grid.origin, c - grid.origin, normal);
             if (normal == vec3(0)) {
                 atomicAdd(counters[0].degenerate, 1u);
                 valid = false;
             }
         }
     }
-    if (gl_LocalInvocationIndex == 0u) many_count = 0u;
+    if ((bodies[body].resolution & LDC_BARE) != 0u) valid = false;
+    if (gl_LocalInvocationIndex == 0u) many_count = group_valid = 0u;
     barrier();
+    if (valid) group_valid = 1u;
+    barrier();
+    if (group_valid == 0u) return;
     // Only the overlap band has triangles that several LDIs capture.
     const uint first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(normal), last_axis = params.sampling == LDC_BAND ? 2u : first_axis;
     uint count = 0u, covering = 0u;

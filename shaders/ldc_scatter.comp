@@ -13,6 +13,8 @@ BUFFER(readonly, 6, uvec3, triangles)
 BUFFER_ALIGNED(writeonly, 7, uvec2, samples)
 BUFFER(writeonly, 8, uint, sample_ids)
 BUFFER(readonly, 9, LdcBody, bodies)
+BUFFER_ALIGNED(writeonly, 10, uvec4, patches)
+BUFFER_ALIGNED(readonly, 11, LdcCorners, corners)
 #include "ldc_projected.glsl"
 
 void main() {
@@ -24,9 +26,15 @@ void main() {
     const uint cell = node_cells[voxel >> 6u].x;
     const CubeGrid grid = bodies[node_cells[voxel >> 6u].y].grid;
     const uvec3 position = uvec3(cell & 1023u, cell >> 10u & 1023u, cell >> 20u) * 4u + ldcCell64(voxel & 63u);
-    uvec2 data = ldcPackSample(ldcProjected(grid, id), position, id & 3u, params.sampling);
-    if (slot + 1u == voxel_counts[voxel]) data.y |= 1u << 30u;
+    const bool last = slot + 1u == voxel_counts[voxel];
     const uint at = (voxel_table[params.first_node * 64u + voxel] & 0x7fffffffu) + slot;
-    samples[at] = data;
+    if (params.sampling == LDC_CONSERVATIVE) {
+        vec3 a, b, c;
+        ldcCornersOf(corners[id >> 2u], a, b, c);
+        const vec3 normal = corners[id >> 2u].cz_normal.yzw;  // that by which the rasteriser chose the axis
+        patches[at] = ldcPackPatch(ldcProjectFrom(grid.inv_voxel, a, b, c, normal, id & 3u), position, id, last);
+        return;
+    }
+    samples[at] = ldcPackSample(ldcProjected(grid, id), position, id & 3u, params.sampling, last);
     sample_ids[at] = id;
 }

@@ -8,6 +8,7 @@ BUFFER(readonly, 1, uint, occupancy_sums)
 BUFFER(writeonly, 2, uvec2, top_table)
 BUFFER(readonly, 3, LdcBody, bodies)
 BUFFER(readonly, 4, LdcCounters, counters)
+BUFFER(writeonly, 5, LdcCounters, readback)
 #include "ldc_bodies.glsl"
 
 uint first_top;  // of the body, in the build's tables
@@ -27,7 +28,8 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i >= counters[0].cells || node_masks[i] != uvec2(0)) return;
+    if (i == 0u) readback[0] = counters[0];  // all of them are final by now
+    if (i >= counters[0].cells || counters[0].cells > params.cell_capacity || node_masks[i] != uvec2(0)) return;
     const uint body = ldcBodyOfCell(params.first_cell + i);
     first_top = ldcFirstCell(body);
     const ivec3 tops = ivec3(bodies[body].grid.dims >> 4u);

@@ -24,12 +24,29 @@ struct LdcBody {
     CubeGrid grid;        ///< written by ldc_grids
     uint first_triangle;  ///< of the triangle buffer
     uint triangles;
-    uint resolution;   ///< voxels along the longest side, a multiple of 16
+    uint resolution;   ///< voxels along the longest side, a multiple of 16; LDC_BARE
     uint first_cell;   ///< in the table of 16x16x16 cells, or its first pixel; written by ldc_grids
     uvec3 first_line;  ///< of ldc_sat_scan along x, y, z, counted over the bodies of a build; written by ldc_grids
     float tolerance;   ///< of `tolerance` hits, in the units of the body's space
 };
 SHARED_SIZE(LdcBody, 64);
+/// Of LdcBody::resolution: the body has no cube, its triangles are tested one by one (PEELRAY_BARE).
+#define LDC_BARE 0x80000000u
+
+/// The corners of a triangle of a body from the grid's origin, in the units of the body's space: what `exact` hits by voxel are tested
+/// against, in three blocks that GPUs load at once.
+struct LdcCorners {
+    vec4 a_bx, byz_cxy, cz_normal;  ///< and the normal, not normalised (ldcNormal)
+};
+SHARED_SIZE(LdcCorners, 48);
+#ifndef __cplusplus
+void ldcCornersOf(LdcCorners packed, out vec3 a, out vec3 b, out vec3 c) {
+    a = packed.a_bx.xyz;
+    b = vec3(packed.a_bx.w, packed.byz_cxy.xy);
+    c = vec3(packed.byz_cxy.zw, packed.cz_normal.x);
+}
+LdcCorners ldcPackCorners(vec3 a, vec3 b, vec3 c, vec3 normal) { return LdcCorners(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, normal)); }
+#endif
 
 /// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the
 /// bodies that were built before.
@@ -90,14 +107,10 @@ SHARED_SIZE(LdcCounters, 68);
 
 /// Workgroups of the passes whose work is counted on the GPU, in this order in the buffer of groups.
 #define LDC_GROUPS_BLOCKS 0u
-#define LDC_GROUPS_OCCUPIED 1u
-#define LDC_GROUPS_NODES 2u  // four to a group
-#define LDC_GROUPS_FRAGMENTS 3u
-#define LDC_GROUPS_LONG 4u
-#define LDC_GROUPS_CELLS 5u  // 256 to a group
-#define LDC_GROUPS_CELLS_BY_64 6u
-#define LDC_GROUPS_LINES 7u  // three, of 64
-#define LDC_GROUPS 10u
+#define LDC_GROUPS_FRAGMENTS 1u  // by pixel, as those that follow
+#define LDC_GROUPS_LONG 2u
+#define LDC_GROUPS_CELLS 3u  // 256 to a group
+#define LDC_GROUPS 4u
 
 /// Parameters of ldc_max, one step of a reduction.
 struct MaxParams {
@@ -185,8 +198,9 @@ SHARED_SIZE(GpuInstance, 72);
 struct InstanceParams {
     uint count;
     uint padded;  ///< rounded up to a multiple of 8
+    uint slots;   ///< of up to 8 instances where their boxes go, four bits each: those of bare bodies first
 };
-SHARED_SIZE(InstanceParams, 8);
+SHARED_SIZE(InstanceParams, 12);
 
 /// Parameters of all tree_* passes.
 struct TreeParams {

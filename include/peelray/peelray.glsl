@@ -8,9 +8,11 @@
 //   uint  PEELRAY_VOXEL(uint i)       64 entries per occupied node: voxels
 //   uvec2 PEELRAY_SAMPLE(uint i)      samples, the list of a voxel in a row
 //   uint  PEELRAY_SAMPLE_ID(uint i)   triangle id * 4 + axis of the LDI
+//   uvec4 PEELRAY_PATCH(uint i)       `exact` by voxel: samples and their ids in one (ldcPackPatch)
 //   uint  PEELRAY_OFFSET(uint i)      by pixel: where a pixel's samples begin
 //   vec2  PEELRAY_RANGE(uint i)       by pixel: least and greatest depth in a block or cell of the pyramid
-//   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` only)
+//   void  PEELRAY_TRIANGLE(uint id, out vec3 a, out vec3 b, out vec3 c)   corners in the body's space (`exact` by pixel, and bare bodies)
+//   void  PEELRAY_CORNERS(uint id, out vec3 a, out vec3 b, out vec3 c)   the same from the grid's origin (`exact` by voxel)
 // and may define
 //   PEELRAY_COUNTERS  a PeelrayCounts (peelray/cube.h) that is added to
 //   PEELRAY_COUNTED   a bool: whether it is; as a constant false counting costs nothing. Without it: true.
@@ -25,9 +27,8 @@
 //   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
 //                     other samples are made where there is a surface)
 //
-// By voxel a cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation
-// made: every empty cell knows an empty box around it, which a ray leaves in one step. The instances are leaves of a hierarchy
-// of eight boxes a node, in the order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first. By pixel: peelray_pixels.glsl.
+// By voxel: peelray_voxels.glsl, by pixel: peelray_pixels.glsl. The instances are leaves of a hierarchy of eight boxes a node, in the
+// order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first.
 #ifndef PEELRAY_GLSL
 #define PEELRAY_GLSL
 
@@ -66,6 +67,7 @@ struct PeelrayOptions {
     uvec2 block;      ///< pixels of a block of the coarse level along u and v
     uint batch;       ///< by pixel: PEELRAY_ONE, ...; a constant
     uint instances;   ///< a constant: how many there are, 1 to 8; 0: any number
+    uint bare;        ///< a constant: of 1 to 8 instances the first so many boxes are those of bare bodies
 };
 
 /// Where a line enters and leaves the box [0, size].
@@ -89,6 +91,9 @@ vec3 peelrayInverse(vec3 d) {
 
 vec3 peelrayTurn(PeelrayInstance place, vec3 v) { return vec3(dot(place.x, v), dot(place.y, v), dot(place.z, v)); }
 
+/// How far outside a cube a ray may start for its coordinates to be precise enough: voxels, and lengths of the longest side.
+const float PEELRAY_NEAR = 2048.0, PEELRAY_NEAR_SIZES = 4.0;
+
 /// A ray in a cube's voxel space: o + s * d, where d is the ray's direction there times a power of two (exact), largest component
 /// about 1, and s = t * s_per_t - s_shift.
 struct PeelrayLocal {
@@ -101,6 +106,13 @@ struct PeelrayLocal {
     float s_begin, s_end;  ///< in the cube
     vec3 tolerance;        ///< of `tolerance` hits along each axis, voxels
 };
+
+/// Where a ray is after so many lengths of its direction, from the cube's corner in the units of the body's space: rounded once.
+vec3 peelrayStartAt(PeelrayInstance place, PeelrayRay ray, float along) {
+    return peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
+                                   peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
+                                   peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
+}
 
 /// The ray as far as a hit at `t_best`; false: it does not meet the cube.
 bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, PeelrayOptions options, out PeelrayLocal r) {
@@ -117,20 +129,20 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
         r.tolerance = options.tolerance * place.inv_voxel * vec3(length(place.x), length(place.y), length(place.z));
     const vec3 size = vec3(tops) * 16.0;
 
-    // A ray that starts outside the box is moved to it first, rounding once, so that a far origin costs no precision.
+    // A ray that starts far outside the box is moved to it first, rounding once, so that a far origin costs no precision.
     r.start = peelrayTurn(place, ray.origin - place.corner);
     r.o = r.start * place.inv_voxel;
     vec2 inside = peelrayClip(r.o, r.inv, size);
     r.s_shift = 0.0;
-    if (inside.x > 0.0 || inside.y < 0.0) {
+    const vec3 away = abs(r.o);
+    const float near = min(PEELRAY_NEAR_SIZES * max(size.x, max(size.y, size.z)), PEELRAY_NEAR);
+    if ((inside.x > 0.0 || inside.y < 0.0) && !(max(away.x, max(away.y, away.z)) <= near)) {
         // To a little before the box: far away the place of entry is known only to some voxels.
         const float rounding = 1e-6 * abs(inside.x) + 1.0;
         if (!(inside.x <= inside.y + rounding)) return false;
         const float along = (inside.x - rounding) / r.s_per_t;
         r.s_shift = along * r.s_per_t;
-        r.start = peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
-                                          peelrayFusedSum(peelrayTwoSum(ray.origin.y, -place.corner.y), along, ray.direction.y),
-                                          peelrayFusedSum(peelrayTwoSum(ray.origin.z, -place.corner.z), along, ray.direction.z)));
+        r.start = peelrayStartAt(place, ray, along);
         r.o = r.start * place.inv_voxel;
         inside = peelrayClip(r.o, r.inv, size);
     }
@@ -148,16 +160,29 @@ bool peelrayNearer(PeelrayLocal r, float s_hit, uint id, PeelrayHit hit) {
 }
 
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
-bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, PeelrayShear shear, inout PeelrayLocal r, inout PeelrayHit hit) {
+/// `from_grid`, a constant: its corners are there as PEELRAY_CORNERS.
+bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, bool from_grid, PeelrayShear shear, inout PeelrayLocal r,
+                         inout PeelrayHit hit) {
     PEELRAY_COUNT(triangles);
     vec3 a, b, c;
-    PEELRAY_TRIANGLE(id, a, b, c);
+#ifndef PEELRAY_ONLY_PIXELS
+    if (from_grid) {
+        PEELRAY_CORNERS(id, a, b, c);
+    } else
+#endif
+    {
+        PEELRAY_TRIANGLE(id, a, b, c);
+        a -= place.origin;
+        b -= place.origin;
+        c -= place.origin;
+    }
     float t;
     vec2 uv;
-    uint found = peelrayIntersectSheared(r.start, shear, a - place.origin, b - place.origin, c - place.origin, PEELRAY_DECIDES, t, uv);
+    uint found = peelrayIntersectSheared(r.start, shear, a, b, c, PEELRAY_DECIDES, t, uv);
     float s_hit = t * place.inv_voxel;
 #ifdef PEELRAY_PRECISE
     if (PEELRAY_PRECISE && found >= PEELRAY_UNCERTAIN) {
+        PEELRAY_TRIANGLE(id, a, b, c);
         const vec2 x = peelrayTwoSum(r.start.x, place.origin.x), y = peelrayTwoSum(r.start.y, place.origin.y),
                    z = peelrayTwoSum(r.start.z, place.origin.z);
         const bool as_given = r.s_shift == 0.0 && place.moved == 0u;
@@ -184,159 +209,6 @@ bool peelrayTestDepth(PeelrayLocal r, float tolerance, vec3 o, vec3 d, vec3 inv,
     const float s_in = max(r.s_min, max(enters.x, enters.y)), s_out = min(r.s_end, min(leaves.x, leaves.y));
     s = abs(d.z) < 1e-12 ? s_in : clamp((w - o.z) * inv.z, s_in, max(s_in, s_out));
     return s_in <= s_out && abs(o.z + s * d.z - w) <= tolerance && s > r.s_min && s <= r.s_best;
-}
-
-/// What the samples of a list are tested with: where the ray enters and leaves their cell, from the cell's centre, voxels.
-struct PeelraySegment {
-    vec3 enters, leaves;
-};
-
-/// `exact`: may the ray hit the triangle of this sample inside the cell? Conservative: the sample's plane passes between the
-/// segment's ends, and the triangle is in the part of the pixel where the ray meets it.
-bool peelrayMayHit(uvec2 data, PeelraySegment segment) {
-    // word 0: w (16 bits: [-2, 3] voxels from the voxel's corner), coverage (16 bits: 4x4 cells of the pixel);
-    // word 1: slopes (2x14 bits: PEELRAY_SLOPE_RANGE), axis (2 bits), last of its list (1 bit)
-    const float unit = 8191.0 / PEELRAY_SLOPE_RANGE;  // of the slopes as they are stored
-    const float su = float(bitfieldExtract(int(data.y), 0, 14)), sv = float(bitfieldExtract(int(data.y), 14, 14));
-    const float w = float(data.x & 0xffffu) * (5.0 / 65535.0 * unit) - 2.5 * unit;
-    const bool x = (data.y & (3u << 28u)) == 0u, y = (data.y & (1u << 28u)) != 0u;
-    const vec3 normal = vec3(x ? unit : (y ? -sv : -su), x ? -su : (y ? unit : -sv), x ? -sv : (y ? -su : unit));
-    const float f0 = dot(normal, segment.enters) - w, f1 = dot(normal, segment.leaves) - w;
-    // Written so that a NaN passes.
-    if (min(f0, f1) > PEELRAY_SEGMENT_SLACK * unit || max(f0, f1) < -PEELRAY_SEGMENT_SLACK * unit) return false;
-    if (!(abs(f0 - f1) > PEELRAY_UNCERTAIN_PLACE * unit)) return true;
-    const vec3 at = mix(segment.enters, segment.leaves, clamp(f0 / (f0 - f1), 0.0, 1.0));
-    const vec2 pixel = x ? at.yz : (y ? at.zx : at.xy);
-    const uvec2 bit = uvec2(clamp(pixel * 4.0 + 2.0, vec2(0), vec2(3)));
-    return (data.x >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
-}
-
-/// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
-/// valid (peelrayTrace), `skip` a triangle that does not count.
-void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
-    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
-    PeelrayLocal r;
-    if (!peelrayEnterCube(place, ray, hit.t, options, r)) return;
-    const uvec3 tops = uvec3(r.last + 1) >> 4u;
-    // Cells are walked in a mirrored space, where the ray goes up along every axis: mirrored coordinates are ~coordinate.
-    const bvec3 up = greaterThanEqual(r.d, vec3(0));
-    const ivec3 mirror = ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1);
-    const vec3 o_inv = r.o * r.inv;
-    // Of a packed box only the end that the ray leaves through is looked at.
-    const uvec3 ahead = uvec3(up.x ? 6u : 0u, up.y ? 8u : 2u, up.z ? 10u : 4u);
-    const PeelrayShear shear = peelrayShear(r.d);
-    float s = r.s_begin;
-    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last) ^ mirror;
-    bool found_one = false;
-
-    while (true) {
-        PEELRAY_COUNT(steps);
-        // The cell's entry: a list of samples, or an empty box. `last`: the box's last cell along the ray.
-        const uvec3 at = uvec3(cell ^ mirror);
-        const uvec3 top = at >> 4u;
-        const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
-        ivec3 last;
-        bool more = false;  // the list has samples left
-        uint j = 0u;        // its next sample
-        if ((top_entry.x >> 31u) == 0u) {
-            const uvec3 word = uvec3(up.x ? top_entry.y : top_entry.x, up.y ? top_entry.y : top_entry.x, up.z ? top_entry.y : top_entry.x);
-            last = (ivec3(word.x & 1023u, word.y >> 10u & 1023u, word.z >> 20u & 1023u) << 4 ^ mirror) | 15;
-        } else {
-            const uvec3 in_top = at >> 2u & 3u;
-            uint entry = PEELRAY_NODE(top_entry.y * 64u + in_top.z * 16u + in_top.y * 4u + in_top.x);
-            int scale = 2;
-            if ((entry >> 31u) != 0u) {
-                const uvec3 in_node = at & 3u;
-                entry = PEELRAY_VOXEL((entry & 0x7fffffffu) * 64u + in_node.z * 16u + in_node.y * 4u + in_node.x);
-                scale = 0;
-                more = (entry >> 31u) != 0u;
-                j = entry & 0x7fffffffu;
-            }
-            const int inside = more ? 0 : (4 << scale) - 1;
-            const uvec3 end = more ? uvec3(0) : (uvec3(entry) >> ahead & 3u) << scale;
-            last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror) | ((1 << scale) - 1);
-        }
-        const vec3 exits = vec3(last + 1) * abs(r.inv) - o_inv;
-        const float s_out = min(exits.x, min(exits.y, exits.z));
-
-        if (more) {
-            PEELRAY_COUNT(cells);
-            if (options.hit == PEELRAY_EXACT) {
-                PeelraySegment segment;
-                const vec3 from_centre = r.o - (vec3(at) + 0.5);
-                segment.enters = from_centre + s * r.d;
-                segment.leaves = from_centre + min(s_out, r.s_best) * r.d;
-                // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
-                do {
-                    uint candidate = PEELRAY_MISS;
-                    while (more && candidate == PEELRAY_MISS && !(options.any_hit && found_one)) {
-                        PEELRAY_COUNT(samples);
-                        const uvec2 data = PEELRAY_SAMPLE(j);
-                        more = (data.y >> 30u & 1u) == 0u;
-                        if (peelrayMayHit(data, segment)) {
-                            const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                            if (id != skip) {
-                                if (PEELRAY_DEFER)
-                                    candidate = id;
-                                else if (peelrayTestTriangle(place, ray, id, shear, r, hit))
-                                    found_one = true;
-                            }
-                        }
-                        j++;
-                    }
-                    if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, shear, r, hit)) found_one = true;
-                } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));
-            } else {
-                const vec3 o_cell = r.o - vec3(at);
-                while (more) {
-                    PEELRAY_COUNT(samples);
-                    const uvec2 data = PEELRAY_SAMPLE(j);
-                    const uint axis = data.y >> 28u & 3u;
-                    const float w = float(data.x & 0xffffu) * (5.0 / 65535.0) - 2.0;
-                    const vec3 dr = peelrayToLdi(r.d, axis), or = peelrayToLdi(o_cell, axis);
-                    bool hits;
-                    float s_hit;
-                    if (options.hit == PEELRAY_TOLERANCE) {
-                        hits = peelrayTestDepth(r, r.tolerance[axis], or, dr, peelrayToLdi(r.inv, axis), w, s_hit);
-                    } else {
-                        const vec2 slope = vec2(bitfieldExtract(int(data.y), 0, 14), bitfieldExtract(int(data.y), 14, 14)) * (PEELRAY_SLOPE_RANGE / 8191.0);
-                        const vec2 centre = or.xy - 0.5;
-                        s_hit = (w + dot(slope, centre) - or.z) / (dr.z - dot(slope, dr.xy));
-                        const vec2 pixel = centre + s_hit * dr.xy;
-                        hits = s_hit > r.s_min && s_hit <= r.s_best && abs(pixel.x) <= PEELRAY_FOOTPRINT && abs(pixel.y) <= PEELRAY_FOOTPRINT;
-                    }
-                    if (hits) {
-                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                        if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
-                            r.s_best = s_hit;
-                            hit.triangle = id;
-                            found_one = true;
-                        }
-                    }
-                    more = (data.y >> 30u & 1u) == 0u;
-                    j++;
-                }
-            }
-            if (options.any_hit && found_one) break;
-        }
-
-        if (s_out >= min(r.s_end, r.s_best)) break;
-        // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the
-        // box.
-        s = max(s, s_out);
-        cell = clamp(ivec3(floor(r.o + s * r.d)) ^ mirror, cell, last);
-        if (exits.x <= exits.y && exits.x <= exits.z)
-            cell.x = last.x + 1;
-        else if (exits.y <= exits.z)
-            cell.y = last.y + 1;
-        else
-            cell.z = last.z + 1;
-        if (any(greaterThan(uvec3(cell ^ mirror), uvec3(r.last)))) break;
-    }
-    if (found_one) {
-        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
-        hit.instance = instance;
-    }
 }
 
 /// Where a ray enters a box of the hierarchy, as an integer of the same order; PEELRAY_MISS: it does not, before `t_max`.
@@ -405,23 +277,40 @@ bool peelrayNormalise(inout PeelrayRay ray, out float scale) {
     return true;
 }
 
+#ifndef PEELRAY_ONLY_PIXELS
+#include "peelray/peelray_voxels.glsl"
+#endif
 #ifndef PEELRAY_ONLY_VOXELS
 #include "peelray/peelray_pixels.glsl"
 #endif
 
+/// The triangle of an instance that does not count.
+uint peelrayOwn(uint instance, uvec2 skip) { return skip.x == instance ? skip.y : PEELRAY_MISS; }
+
 /// Nearest hit in one instance's cube, in the order in which the cubes are stored.
-void peelrayTraceInstance(uint instance, PeelrayRay ray, uvec2 skip, PeelrayOptions options, inout PeelrayHit hit) {
-    const uint own = skip.x == instance ? skip.y : PEELRAY_MISS;
+void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
 #if defined(PEELRAY_ONLY_VOXELS)
-    peelrayTraceVoxels(instance, ray, own, options, hit);
+    peelrayTraceVoxels(instance, ray, skip, options, hit);
 #elif defined(PEELRAY_ONLY_PIXELS)
-    peelrayTracePixels(instance, ray, own, options, hit);
+    peelrayTracePixels(instance, ray, skip, options, hit);
 #else
     if (options.traversal == PEELRAY_VOXELS)
-        peelrayTraceVoxels(instance, ray, own, options, hit);
+        peelrayTraceVoxels(instance, ray, skip, options, hit);
     else
-        peelrayTracePixels(instance, ray, own, options, hit);
+        peelrayTracePixels(instance, ray, skip, options, hit);
 #endif
+}
+
+/// Nearest hit in one instance, whether it has a cube or is bare.
+void peelrayTraceInstance(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
+#ifndef PEELRAY_ONLY_PIXELS
+    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
+    if (options.traversal == PEELRAY_VOXELS && (place.tops & PEELRAY_BARE) != 0u) {
+        peelrayTraceBare(instance, place, ray, skip, hit);
+        return;
+    }
+#endif
+    peelrayTraceCube(instance, ray, skip, options, hit);
 }
 
 /// Walks the hierarchy over any number of instances, nearest first.
@@ -455,7 +344,7 @@ void peelrayTraceTree(PeelrayTree tree, PeelrayRay ray, vec3 inv, uvec2 skip, Pe
             enters = true;
             continue;
         }
-        peelrayTraceInstance(box.instance, ray, skip, options, hit);
+        peelrayTraceInstance(box.instance, ray, peelrayOwn(box.instance, skip), options, hit);
         if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
     }
 }
@@ -472,16 +361,32 @@ PeelrayHit peelrayTrace(PeelrayTree tree, PeelrayRay ray, uvec2 skip, PeelrayOpt
     PeelrayHit hit = miss;
     hit.t = ray.tmax;
     const vec3 inv = peelrayInverse(ray.direction);
-    if (options.instances == 1u) {
-        peelrayTraceInstance(0u, ray, skip, options, hit);
-    } else if (options.instances != 0u) {
-        uint word = peelrayMeet(tree.first[0], options.instances, ray.origin, inv, ray.tmin, hit.t);
-        for (; (word >> 24u) != 0u; word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu)) {
-            const PeelrayBox box = PEELRAY_BOX(tree.first[0] + (word & 7u));
-            // A hit found in between may lie before it; then it lies before all that are left.
-            if (hit.triangle != PEELRAY_MISS && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) break;
-            peelrayTraceInstance(box.instance, ray, skip, options, hit);
-            if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
+    if (options.instances != 0u) {
+        uint first = tree.first[0], cubes = options.instances;
+        bool done = false;
+#ifndef PEELRAY_ONLY_PIXELS
+        // Bare bodies first: neighbouring rays do the same there, and what they hit shortens their ways through the cubes.
+        for (uint i = 0u; i < options.bare && !done; i++) {
+            const PeelrayBox box = PEELRAY_BOX(first + i);
+            if (peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) continue;
+            peelrayTraceBare(box.instance, PEELRAY_INSTANCE(box.instance), ray, peelrayOwn(box.instance, skip), hit);
+            done = options.any_hit && hit.triangle != PEELRAY_MISS;
+        }
+        first += options.bare;
+        cubes -= options.bare;
+#endif
+        if (cubes == 1u && !done) {
+            const PeelrayBox box = PEELRAY_BOX(first);
+            if (box.lower.x <= box.upper.x) peelrayTraceCube(box.instance, ray, peelrayOwn(box.instance, skip), options, hit);
+        } else if (cubes > 1u && !done) {
+            uint word = peelrayMeet(first, cubes, ray.origin, inv, ray.tmin, hit.t);
+            for (; (word >> 24u) != 0u; word = ((word >> 24u) - 1u) << 24u | (word >> 3u & 0x1fffffu)) {
+                const PeelrayBox box = PEELRAY_BOX(first + (word & 7u));
+                // A hit found in between may lie before it; then it lies before all that are left.
+                if (hit.triangle != PEELRAY_MISS && peelrayEnter(box, ray.origin, inv, ray.tmin, hit.t) == PEELRAY_MISS) break;
+                peelrayTraceCube(box.instance, ray, peelrayOwn(box.instance, skip), options, hit);
+                if (options.any_hit && hit.triangle != PEELRAY_MISS) break;
+            }
         }
     } else {
         peelrayTraceTree(tree, ray, inv, skip, options, hit);

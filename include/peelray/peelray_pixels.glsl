@@ -16,7 +16,7 @@ bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, Peelray
         const float slack = PEELRAY_POSITION_SLACK + PEELRAY_PLANE_SLACK * abs(inv_den);
         if (s_plane < s - slack || s_plane > min(s_out, r.s_best) + slack) return false;
         const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-        return id != skip && peelrayTestTriangle(place, ray, id, peelrayShear(r.d), r, hit);
+        return id != skip && peelrayTestTriangle(place, ray, id, false, peelrayShear(r.d), r, hit);
     }
     float s_hit = s_plane;
     if (options.hit == PEELRAY_TOLERANCE) {

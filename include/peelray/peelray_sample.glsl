@@ -3,10 +3,11 @@
 #define PEELRAY_SAMPLE_GLSL
 
 /// By pixel: how far a sample may lie off its own voxel and still be looked at, in voxels: rounding of coordinates up to 2048 voxels
-/// and the quantised plane (w: 4e-5, slopes: 8e-5), see docs/data.md.
+/// and the quantised plane (slopes: 4e-5), see docs/data.md.
 const float PEELRAY_POSITION_SLACK = 2e-3;
 const float PEELRAY_PLANE_SLACK = 5e-4;
-/// Of the distance to a sample's plane at the ends of a ray's way through a voxel: both of the above, voxels.
+/// Of the distance to a sample's plane at the ends of a ray's way through a voxel, voxels: rounding of coordinates, and slopes that are
+/// half floats (2.4e-4; 7.4e-4 where one is about -1).
 const float PEELRAY_SEGMENT_SLACK = 3e-3;
 /// A plane's values at both ends of a ray's way through a voxel, off by PEELRAY_SEGMENT_SLACK at most, must differ by this for the place
 /// in between where it is hit to be known to 0.03 pixels, by which the coverage is wider than the triangle.

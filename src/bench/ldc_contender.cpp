@@ -52,8 +52,9 @@ nlohmann::ordered_json LdcContender::memory() const {
     add("voxel_table", cubes.voxel_table);
     add("pixel_offsets", cubes.pixel_offsets);
     add("pixel_ranges", cubes.pixel_ranges);
-    add("samples", cubes.samples);
+    add("samples", cubes.has_patches() ? cubes.patches : cubes.samples);
     add("sample_ids", cubes.sample_ids);
+    add("corners", cubes.corners);
     bytes["instances"] = scene_.instances().bytes();
     bytes["build_scratch"] = stats().scratch_bytes;
     return bytes;

@@ -101,7 +101,7 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     if (!note.empty() && !noted_tolerance_) print_note(note);
     noted_tolerance_ |= !note.empty();
     if (s.cubes.bodies)
-        made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.bodies, s.cubes.bodies == 1 ? "" : "s",
+        made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.cubes(), s.cubes.cubes() == 1 ? "" : "s",
                                    s.cubes.resolution, name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,

@@ -26,12 +26,18 @@ static Json box_stats(const glm::vec3& lower, const glm::vec3& upper) {
 /// One cube, in the space of its body.
 static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
     const CubeGrid& grid = body.grid;
+    // A bare body has a grid, but nothing in it.
+    const bool bare = body.resolution & LDC_BARE;
+    const glm::uvec3 voxels = bare ? glm::uvec3(0) : grid.dims;
     return {{"triangles", body.triangles},
             {"instances", instances},
-            {"built", fixed ? "once" : "every frame"},
-            {"n", body.resolution},
-            {"voxels", {grid.dims.x, grid.dims.y, grid.dims.z}},
-            {"voxel_size", grid.voxel},
+            {"bare", bare},
+            {"built", bare    ? "never"
+                      : fixed ? "once"
+                              : "every frame"},
+            {"n", bare ? 0 : body.resolution},
+            {"voxels", {voxels.x, voxels.y, voxels.z}},
+            {"voxel_size", bare ? 0 : grid.voxel},
             {"box", box_stats(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
 }
 
@@ -76,7 +82,8 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
         {"build_scratch_bytes", cubes.scratch_bytes},
         {"triangles_without_area", cubes.counts.degenerate},
         {"triangles_not_finite", cubes.counts.invalid},
-        {"count", cubes.bodies}};
+        {"count", cubes.cubes()},
+        {"bare_bodies", cubes.bare}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);

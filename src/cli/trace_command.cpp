@@ -120,9 +120,9 @@ void run_trace(const TraceArguments& a) {
     settings.ldc = a.tracing.ldc.value_or(0);
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
-    const CubeChoice choice = choose_automatically(uint32_t(geometry.triangles.size()), settings);
 
     Device device({a.device.device, a.device.validate});
+    const CubeChoice choice = choose_automatically(device, uint32_t(geometry.triangles.size()), settings);
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");
         const auto khr = a.tracing.tracer == "khr" ? std::optional(StructureUpdate::keep) : std::nullopt;
@@ -143,7 +143,7 @@ void run_trace(const TraceArguments& a) {
     if (traced_scene.structures())
         fmt::print(", {} acceleration structures", traced_scene.structures()->stats().bodies);
     else
-        fmt::print(" ({}), {} cubes of up to {}", name_of(choice.hit), traced_scene.cubes().stats().bodies,
+        fmt::print(" ({}), {} cubes of up to {}", name_of(choice.hit), traced_scene.cubes().stats().cubes(),
                    traced_scene.cubes().stats().resolution);
     if (device.timestamp_period() > 0)
         fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", traced_scene.structures() ? "structures" : "cubes",

@@ -20,6 +20,7 @@ Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const bool device_local = where == Where::device || where == Where::ray_tracing;
     if (device_local) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    if (where == Where::readback) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;  // small results, without a copy
     const bool addressed = device_local && device.features.ray_tracing;
     if (addressed)
         info.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |

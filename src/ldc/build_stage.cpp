@@ -12,6 +12,10 @@ uint32_t bounded(const BuildState& state, uint64_t count, uint64_t bytes_each) {
     return uint32_t(std::min(count, state.most() / bytes_each));
 }
 
+void settle_capacity(uint32_t& capacity, uint32_t needed) {
+    capacity = uint32_t(std::min<uint64_t>(capacity, uint64_t(needed) * 9 / 8 + 64));
+}
+
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most) {
     if (needed <= capacity) return false;
     // The reserve is a wish, the need is not: what exceeds the device's limit fails where memory is asked for.

@@ -22,6 +22,7 @@ struct BuildState {
     TableSize before;    ///< what the tables hold of bodies that were built earlier and stay
     LdcParams params{};  ///< with the capacities that the buffers have now
     Buffer counters;     ///< one LdcCounters
+    Buffer readback;     ///< the same after the build, for the host
     Buffer groups;       ///< LDC_GROUPS workgroup counts
     Buffer fragments;    ///< LdcFragment each
     Buffer node_masks;   ///< two uint32 per 16³ cell: its occupied nodes; by pixel: not used
@@ -51,6 +52,9 @@ class BuildStage {
     virtual void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) = 0;
     /// After the submission: raises the capacities that did not do; true if there were any.
     virtual bool grow(BuildState& state, const LdcCounters& counts) = 0;
+    /// After the first build that fitted: lowers the capacities that were guessed to what is needed, with a reserve,
+    /// for passes run as often as they say. The buffers stay.
+    virtual void settle(BuildState&, const LdcCounters&) {}
     /// Bytes of scratch memory held.
     virtual uint64_t bytes() const = 0;
 };
@@ -63,6 +67,9 @@ inline uint64_t left_of(uint64_t most, uint64_t used) {
 }
 /// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; tells whether it did.
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most);
+
+/// Lowers `capacity` to an eighth more than what was needed.
+void settle_capacity(uint32_t& capacity, uint32_t needed);
 
 /// The three passes of the prefix sum over `sums` (uvec2 each): as many as counter number `counter` says.
 void record_scan(Commands& commands, const BuildState& state, uint32_t capacity, uint32_t counter, const Buffer& sums,

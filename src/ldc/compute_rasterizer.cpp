@@ -1,10 +1,12 @@
 #include "ldc/compute_rasterizer.h"
 
+#include <algorithm>
+
 namespace peelray {
 
 /// Pixels of a triangle's bounds that one thread goes through: fewer where there are too few triangles to fill a GPU.
 static uint32_t small_pixels(uint32_t triangles) {
-    return triangles < 100'000 ? 12 : 48;
+    return triangles < 30'000 ? 12 : triangles < 100'000 ? 24 : 48;
 }
 
 void ComputeRasterizer::guess(BuildState& state, const BuildSize& size) {
@@ -12,7 +14,7 @@ void ComputeRasterizer::guess(BuildState& state, const BuildSize& size) {
 }
 
 void ComputeRasterizer::allocate(Commands&, BuildState& state) {
-    ensure_size(state.device, blocks_, "queue of blocks", uint64_t(state.params.block_capacity) * 8);
+    ensure_size(state.device, blocks_, "queue of blocks", std::max(state.params.block_capacity, 1u) * 8ull);
 }
 
 void ComputeRasterizer::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
@@ -27,11 +29,20 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"bodies", state.cubes.body_table},
                                 {"blocks", blocks_}};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
-    commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles)}), bindings, p,
-                 groups_for(p.triangles, 128));
+    const bool corners = state.cubes.has_patches();
+    std::vector<Binding> of_raster = bindings;
+    of_raster.push_back({"corners", corners ? state.cubes.corners : state.cubes.body_table});
+    commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles), corners}), of_raster, p,
+                 groups_for(p.triangles, 64));
+    if (p.block_capacity == 0) return;
     state.record_groups(commands);
     commands.run_indirect(device.pass("ldc_raster_blocks", {masked}), bindings, p, state.groups,
                           LDC_GROUPS_BLOCKS * 12);
+}
+
+/// Scenes without large triangles do without the passes for them.
+void ComputeRasterizer::settle(BuildState& state, const LdcCounters& counts) {
+    if (counts.blocks == 0) state.params.block_capacity = 0;
 }
 
 bool ComputeRasterizer::grow(BuildState& state, const LdcCounters& counts) {

@@ -11,6 +11,7 @@ class ComputeRasterizer : public BuildStage {
     void allocate(Commands& commands, BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
     bool grow(BuildState& state, const LdcCounters& counts) override;
+    void settle(BuildState& state, const LdcCounters& counts) override;
     uint64_t bytes() const override { return blocks_.bytes(); }
 
   private:

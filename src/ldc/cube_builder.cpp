@@ -21,6 +21,7 @@ constexpr uint32_t kLongestListOnCpu = 16'000;
 BuildSize size_of(const std::vector<CubeBody>& bodies, uint32_t first, uint32_t count) {
     BuildSize size;
     for (uint32_t i = first; i < first + count; i++) {
+        if (bodies[i].bare) continue;
         const glm::u64vec3 d = make_grid(bodies[i].lower, bodies[i].upper, bodies[i].resolution).dims;
         size.cells += d.x * d.y * d.z / 4096;
         size.pixels += d.x * d.y + d.y * d.z + d.z * d.x;
@@ -59,7 +60,7 @@ std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) 
 CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
                          const TableSize& before)
     : cubes_(cubes),
-      state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}, {}, {}}),
+      state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}, {}, {}, {}}),
       rasterizer_(make_rasterizer(device, cubes)),
       order_(make_order(cubes.layout())) {
     const CubeBody &front = cubes.bodies()[first], &back = cubes.bodies()[first + bodies - 1];
@@ -77,7 +78,7 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
     const MemoryPart part(device, kScratch);
     state_->counters = Buffer(device, "build counters", sizeof(LdcCounters));
     state_->groups = Buffer(device, "build workgroups", LDC_GROUPS * 12);
-    counters_readback_ = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
+    state_->readback = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
     const BuildSize size = size_of(cubes.bodies(), first, bodies);
     rasterizer_->guess(*state_, size);
     order_->guess(*state_, size);
@@ -111,12 +112,11 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
                  state_->params, {1});
     rasterizer_->record(commands, *state_, triangles);
     order_->record(commands, *state_, triangles);
-    commands.copy(state_->counters, counters_readback_, sizeof(LdcCounters));
     commands.end_group();
 }
 
 bool CubeBuilder::finish(Commands& commands) {
-    std::memcpy(&counts_, counters_readback_.mapped(), sizeof counts_);
+    std::memcpy(&counts_, state_->readback.mapped(), sizeof counts_);
     if (counts_.wrapped & LDC_FAR_TOLERANCE)
         fail(
             "the tolerance is more than {} voxels of a cube, which --traversal voxel cannot hold: choose a smaller "
@@ -133,7 +133,14 @@ bool CubeBuilder::finish(Commands& commands) {
             "{} triangles crowd into one {}, more than rays can walk through on the software device '{}' ({}): use a "
             "larger --ldc, or a GPU",
             counts_.longest, cubes_.layout().by_pixel() ? "pixel" : "voxel", device.name, kLongestListOnCpu);
-    if (!grown) return true;
+    if (!grown) {
+        if (!settled_) {
+            rasterizer_->settle(*state_, counts_);
+            order_->settle(*state_, counts_);
+        }
+        settled_ = true;
+        return true;
+    }
     redone_++;
     allocate(commands);
     return false;

@@ -57,7 +57,7 @@ class CubeBuilder {
     std::unique_ptr<BuildStage> rasterizer_, order_;
     LdcCounters counts_{};
     uint32_t redone_ = 0;
-    Buffer counters_readback_;
+    bool settled_ = false;
 };
 
 }  // namespace peelray

@@ -1,5 +1,6 @@
 #include "ldc/cubes.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -82,6 +83,10 @@ TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> vert
     commands.upload(triangles, indices);
 }
 
+uint64_t most_exact_triangles(const Device& device) {
+    return device.limits().maxStorageBufferRange / sizeof(LdcCorners);
+}
+
 void check_captures(BuilderKind builder, Sampling sampling) {
     if (builder == BuilderKind::peel && sampling == Sampling::conservative)
         fail(
@@ -107,8 +112,10 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
     std::vector<LdcBody> table;
     std::vector<glm::uvec3> lower, upper;
     for (const CubeBody& body : bodies_) {
-        table.push_back(
-            {{}, body.first_triangle, body.triangles, round_resolution(body.resolution), 0, {}, body.tolerance});
+        assert(!body.bare || (body.triangles >= 1 && body.triangles <= PEELRAY_BARE_TRIANGLES && !layout.by_pixel() &&
+                              layout.builder == BuilderKind::compute));
+        const uint32_t resolution = round_resolution(body.resolution) | (body.bare ? LDC_BARE : 0);
+        table.push_back({{}, body.first_triangle, body.triangles, resolution, 0, {}, body.tolerance});
         lower.push_back(ordered_bits(body.lower));
         upper.push_back(ordered_bits(body.upper));
     }
@@ -129,8 +136,19 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
         fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
              size.nodes, size.samples);
     const MemoryPart part(device_, "cubes");
-    grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
-    grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
+    if (has_patches()) {
+        const uint64_t triangles = uint64_t(bodies_.back().first_triangle) + bodies_.back().triangles;
+        if (triangles > most_exact_triangles(device_))
+            fail(
+                "{} triangles are more than the device '{}' holds for exact hits by voxel ({}): use --hit planar, or "
+                "--traversal two-level",
+                triangles, device_.info().name, most_exact_triangles(device_));
+        if (!corners) corners = Buffer(device_, "the cubes' corners of triangles", triangles * sizeof(LdcCorners));
+        grow(device_, commands, patches, "the cubes' patches", size.samples * 16, kept.samples * 16);
+    } else {
+        grow(device_, commands, samples, "the cubes' samples", size.samples * 8, kept.samples * 8);
+        grow(device_, commands, sample_ids, "the cubes' sample ids", size.samples * 4, kept.samples * 4);
+    }
     const uint64_t attributes = layout_.streams ? 8 : 0;
     grow(device_, commands, sample_attributes, "the cubes' attributes", size.samples * attributes,
          kept.samples * attributes);
@@ -150,12 +168,18 @@ void Cubes::trim(const TableSize& size) {
     const auto to = [&](Buffer& buffer, uint64_t bytes) { shrink(device_, commands, buffer, bytes); };
     to(samples, size.samples * 8);
     to(sample_ids, size.samples * 4);
+    to(patches, size.samples * 16);
     to(sample_attributes, size.samples * 8);
     to(pixel_offsets, size.cells * 4);
     to(pixel_ranges, size.cells * 4);
     to(top_table, size.cells * 8);
     to(node_table, size.occupied * 256);
     to(voxel_table, size.nodes * 256);
+}
+
+bool Cubes::tests_triangles() const {
+    return sampling_ == Sampling::conservative ||
+           std::any_of(bodies_.begin(), bodies_.end(), [](const CubeBody& body) { return body.bare; });
 }
 
 uint32_t Cubes::pyramid_levels() const {

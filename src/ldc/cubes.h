@@ -26,12 +26,18 @@ struct TriangleBuffers {
     TriangleBuffers(Device& device, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> indices);
 };
 
+/// Triangles that the device holds for `exact` hits by voxel: their corners are one buffer.
+uint64_t most_exact_triangles(const Device& device);
+
 /// Triangles that share a cube, in a space of their own.
 struct CubeBody {
     uint32_t first_triangle = 0, triangles = 0;
     uint32_t resolution = 512;     ///< voxels along the longest side: 16 to 2048, rounded up to a multiple of 16
     glm::vec3 lower{0}, upper{0};  ///< bounds; of bodies that deform: as they are now, for a guess of what they need
     float tolerance = 0;           ///< of `tolerance` hits, in the units of the body's space
+    /// No cube is built: rays test the triangles one by one, at most PEELRAY_BARE_TRIANGLES. By voxel, built by
+    /// `compute`.
+    bool bare = false;
 };
 
 /// The next multiple of 16. Throws Error unless 16 ≤ resolution ≤ 2048.
@@ -109,7 +115,9 @@ struct TableSize {
     uint64_t samples = 0;
 
     /// 8 per cell, or per pixel an offset and half a range.
-    uint64_t bytes() const { return cells * 8 + (occupied + nodes) * 256 + samples * 12; }
+    uint64_t bytes(uint64_t sample_bytes) const {
+        return cells * 8 + (occupied + nodes) * 256 + samples * sample_bytes;
+    }
     TableSize operator+(const TableSize& b) const {
         return {cells + b.cells, occupied + b.occupied, nodes + b.nodes, samples + b.samples};
     }
@@ -125,6 +133,11 @@ class Cubes {
     const std::vector<CubeBody>& bodies() const { return bodies_; }
     Sampling sampling() const { return sampling_; }
     const CubeLayout& layout() const { return layout_; }
+    /// Samples as `exact` hits by voxel read them: in `patches`, not in `samples` and `sample_ids`.
+    bool has_patches() const { return sampling_ == Sampling::conservative && !layout_.by_pixel(); }
+    uint64_t sample_bytes() const { return has_patches() ? 16 : 12; }
+    /// Are triangles tested, not samples alone? Then holes in them are looked for at the hit.
+    bool tests_triangles() const;
     /// Levels of the min/max pyramid over the pixels of the largest LDI.
     uint32_t pyramid_levels() const;
 
@@ -144,9 +157,10 @@ class Cubes {
     Buffer voxel_table;  ///< uint32, 64 per occupied node: bit 31: first sample of a list; else an empty box in voxels
     Buffer pixel_offsets;  ///< by pixel: uint32 per pixel of the three LDIs, and one more: where its samples begin
     Buffer pixel_ranges;   ///< by pixel: vec2 per block, or per cell of the pyramid: least and greatest depth of a hit
-    Buffer
-        samples;  ///< uvec2 each: depth, coverage, slopes, axis, last-of-list (ldcPackSample); by pixel: depth, slopes
-    Buffer sample_ids;         ///< uint32 each: triangle · 4 + axis
+    Buffer samples;        ///< uvec2 each: depth, slopes, axis, last-of-list (ldcPackSample); by pixel: depth, slopes
+    Buffer sample_ids;     ///< uint32 each: triangle · 4 + axis
+    Buffer patches;        ///< uvec4 each: plane, coverage, last-of-list, id (ldcPackPatch)
+    Buffer corners;        ///< where there are patches: LdcCorners of every triangle
     Buffer sample_attributes;  ///< of drawn streams: uvec2 each: normal, colour (LdcCaptured)
 
   private:

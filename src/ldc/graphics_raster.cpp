@@ -67,8 +67,6 @@ void record_inspect(Commands& commands, const BuildState& state, const TriangleB
                   {"counters", state.counters},
                   {"bodies", state.cubes.body_table}},
                  state.params, groups_for(state.params.triangles, 64));
-    // The by-voxel order begins with a pass over the cells; the by-pixel order counts its workgroups itself.
-    if (!state.cubes.layout().by_pixel()) state.record_groups(commands);
 }
 
 }  // namespace peelray

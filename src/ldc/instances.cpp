@@ -39,6 +39,8 @@ Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : d
     table_ = Buffer(device, "instances", count * sizeof(GpuInstance));
     cubes_ = Buffer(device, "cubes of instances", count * sizeof(PeelrayInstance));
     boxes_ = Buffer(device, "boxes of instances", total * sizeof(PeelrayBox));
+    if (count <= 8)
+        for (const InstanceInfo& info : infos) few_.push_back(info.body);
     if (count <= 8) return;
     unsorted_boxes_ = Buffer(device, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
     if (count <= TREE_SMALL) return;
@@ -67,9 +69,16 @@ TreeParams Instances::tree_params() const {
     return p;
 }
 
+uint32_t Instances::bare(const Cubes& cubes) const {
+    return uint32_t(std::count_if(few_.begin(), few_.end(), [&](uint32_t body) { return cubes.bodies()[body].bare; }));
+}
+
 void Instances::record(Commands& commands, const Cubes& cubes, bool hierarchy) {
     commands.begin_group("instances");
-    const InstanceParams p{count(), filled(count())};
+    InstanceParams p{count(), filled(count()), 0};
+    uint32_t next_bare = 0, next_cube = bare(cubes);
+    for (size_t i = 0; i < few_.size(); i++)
+        p.slots |= (cubes.bodies()[few_[i]].bare ? next_bare++ : next_cube++) << (4 * i);
     // The only group of a small hierarchy needs no order.
     const Buffer& boxes = count() <= 8 ? boxes_ : unsorted_boxes_;
     commands.run(device_.pass("instances"),

@@ -14,6 +14,8 @@ class Instances {
     Instances(Device& device, const std::vector<InstanceInfo>& infos);
 
     uint32_t count() const { return tree_.instances; }
+    /// How many of up to 8 instances show bare bodies of these cubes; of more, 0.
+    uint32_t bare(const Cubes& cubes) const;
 
     /// Uploads where instances [first, first + transforms.size()) stand.
     void place(Commands& commands, std::span<const GpuTransform> transforms, uint32_t first = 0);
@@ -36,6 +38,7 @@ class Instances {
     uint32_t boxes_of(uint32_t level) const;
 
     Device& device_;
+    std::vector<uint32_t> few_;  ///< bodies of up to 8 instances; of more, empty
     PeelrayTree tree_{};
     Buffer infos_, transforms_, table_, cubes_, boxes_, unsorted_boxes_;
     Buffer middles_, keys_, sums_, block_sums_, unsorted_instances_;  ///< of large hierarchies only

@@ -36,6 +36,7 @@ void PixelOrder::clear(Commands& commands, const BuildState& state) {
 void PixelOrder::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     record_lists(commands, state, triangles);
     record_ranges(commands, state);
+    commands.copy(state.counters, state.readback, sizeof(LdcCounters));
 }
 
 void PixelOrder::record_lists(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {

@@ -11,7 +11,9 @@ std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, s
                                      {"node_table", or_absent(by_pixel ? cubes.pixel_offsets : cubes.node_table)},
                                      {"voxel_table", or_absent(by_pixel ? cubes.pixel_ranges : cubes.voxel_table)},
                                      {"samples", or_absent(cubes.samples)},
-                                     {"sample_ids", or_absent(cubes.sample_ids)}};
+                                     {"sample_ids", or_absent(cubes.sample_ids)},
+                                     {"patches", or_absent(cubes.patches)},
+                                     {"corners", or_absent(cubes.corners)}};
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;
 }
@@ -32,8 +34,8 @@ uint32_t shader_constant(Batch batch) {
     return batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE;
 }
 
-uint32_t instance_constant(const Instances& instances) {
-    return instances.count() <= 8 ? instances.count() : 0;
+std::array<uint32_t, 2> instance_constants(const TracedScene& scene) {
+    return {scene.instances.count() <= 8 ? scene.instances.count() : 0, scene.instances.bare(scene.cubes)};
 }
 
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
@@ -55,13 +57,14 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                                        uint32_t(test),
                                        options.edges == Edges::precise && test == HitTest::exact,
                                        uint32_t(layout.traversal),
-                                       scene.triangles.masks && test == HitTest::exact,
+                                       scene.triangles.masks && scene.cubes.tests_triangles(),
                                        queue.counting != nullptr};
     const bool four = layout.by_pixel() && layout.batch == Batch::rays;
-    if (!four)
-        for (const uint32_t c :
-             {shader_constant(layout.batch), instance_constant(scene.instances), uint32_t(device.immediate)})
+    if (!four) {
+        const auto [instances, bare] = instance_constants(scene);
+        for (const uint32_t c : {shader_constant(layout.batch), instances, uint32_t(device.immediate), bare})
             constants.push_back(c);
+    }
     const Pass& pass = device.pass(four ? "trace_four" : layout.by_pixel() ? "trace_pixels" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();

@@ -1,6 +1,7 @@
 // Tracing queues of rays in cubes.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "gpu/commands.h"
@@ -58,8 +59,9 @@ std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, s
 /// Specialisation constant of the shaders that trace: what one ray does at a time, PEELRAY_ONE, ...
 uint32_t shader_constant(Batch batch);
 
-/// Specialisation constant of the shaders that trace: how many instances there are, up to 8; 0: more.
-uint32_t instance_constant(const Instances& instances);
+/// Specialisation constants of the shaders that trace: how many instances there are, up to 8 (0: more), and of how many
+/// of them the bodies are bare.
+std::array<uint32_t, 2> instance_constants(const TracedScene& scene);
 
 /// The bindings of shaders/cube_fetch.glsl.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);

@@ -4,12 +4,21 @@
 #include <cstddef>
 
 namespace peelray {
+namespace {
+
+/// Samples that the device binds at once, beside those of earlier builds; a fragment is no larger than what it becomes.
+uint64_t most_samples(const BuildState& state) {
+    const uint64_t bytes = std::max<uint64_t>(sizeof(LdcFragment), state.cubes.has_patches() ? 16 : 8);
+    return left_of(state.most() / bytes, state.before.samples);
+}
+
+}  // namespace
 
 /// A surface fills about two samples per pixel and LDI; what is too little is counted, grown and redone.
 void VoxelOrder::guess(BuildState& state, const BuildSize& size) {
     LdcParams& p = state.params;
     p.cell_capacity = bounded(state, size.cells + size.cells / 8 + 8, 8);
-    p.fragment_capacity = bounded(state, 2 * size.pixels + 4 * size.triangles, sizeof(LdcFragment));
+    p.fragment_capacity = uint32_t(std::min(2 * size.pixels + 4 * size.triangles, most_samples(state)));
     p.node_capacity = bounded(state, size.pixels / 8 + 256, 256);
     p.occupied_capacity = bounded(state, std::min<uint64_t>(p.cell_capacity, size.pixels / 64 + 64), 256);
 }
@@ -33,75 +42,88 @@ void VoxelOrder::clear(Commands& commands, const BuildState& state) {
     commands.fill(voxel_counts_, 0, 0, uint64_t(state.params.node_capacity) * 256);
 }
 
-/// The sums for the boxes have nothing to do with the lists: they are recorded between the lists' passes, where the GPU
-/// has room for both.
+/// All passes are dispatched for what there is room for, which is little more than what there is (settle): that costs
+/// less than waiting until the GPU has counted. The sums for the boxes have nothing to do with the lists: they are
+/// recorded between the lists' passes, where the GPU has room for both.
 void VoxelOrder::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
+    const LdcParams& p = state.params;
+    // Samples are in one of two forms; what stands in for the other is not touched by what runs beside.
+    const auto or_none = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : top_cells_; };
+    if (state.cubes.has_patches() && state.cubes.layout().builder != BuilderKind::compute)
+        commands.run(state.device.pass("ldc_corners"),
+                     {{"positions", triangles.positions},
+                      {"triangles", triangles.triangles},
+                      {"bodies", state.cubes.body_table},
+                      {"corners", state.cubes.corners}},
+                     state.params, groups_for(state.params.triangles, 128));
     record_nodes(commands, state);
     record_sums(commands, state, 0);
-    commands.run_indirect(state.device.pass("ldc_count"),
-                          {{"counters", state.counters},
-                           {"top_table", state.cubes.top_table},
-                           {"node_table", state.cubes.node_table},
-                           {"fragments", state.fragments},
-                           {"voxel_counts", voxel_counts_}},
-                          state.params, state.groups, LDC_GROUPS_FRAGMENTS * 12);
+    commands.run(state.device.pass("ldc_count"),
+                 {{"counters", state.counters},
+                  {"top_table", state.cubes.top_table},
+                  {"node_table", state.cubes.node_table},
+                  {"fragments", state.fragments},
+                  {"voxel_counts", voxel_counts_}},
+                 state.params, groups_for(p.fragment_capacity, 128));
     record_sums(commands, state, 1);
-    commands.run_indirect(
+    commands.run(
         state.device.pass("ldc_voxels"),
         {{"counters", state.counters}, {"voxel_counts", voxel_counts_}, {"voxel_table", state.cubes.voxel_table}},
-        state.params, state.groups, LDC_GROUPS_NODES * 12);
+        state.params, groups_for(p.node_capacity, 4));
     record_sums(commands, state, 2);
-    commands.run_indirect(state.device.pass("ldc_scatter"),
-                          {{"counters", state.counters},
-                           {"voxel_table", state.cubes.voxel_table},
-                           {"fragments", state.fragments},
-                           {"voxel_counts", voxel_counts_},
-                           {"node_cells", node_cells_},
-                           {"positions", triangles.positions},
-                           {"triangles", triangles.triangles},
-                           {"samples", state.cubes.samples},
-                           {"sample_ids", state.cubes.sample_ids},
-                           {"bodies", state.cubes.body_table}},
-                          state.params, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(state.device.pass("ldc_top_boxes"),
-                          {{"node_masks", state.node_masks},
-                           {"occupancy_sums", occupancy_sums_},
-                           {"top_table", state.cubes.top_table},
-                           {"bodies", state.cubes.body_table},
-                           {"counters", state.counters}},
-                          state.params, state.groups, LDC_GROUPS_CELLS_BY_64 * 12);
+    commands.run(state.device.pass("ldc_scatter"),
+                 {{"counters", state.counters},
+                  {"voxel_table", state.cubes.voxel_table},
+                  {"fragments", state.fragments},
+                  {"voxel_counts", voxel_counts_},
+                  {"node_cells", node_cells_},
+                  {"positions", triangles.positions},
+                  {"triangles", triangles.triangles},
+                  {"samples", or_none(state.cubes.samples)},
+                  {"sample_ids", or_none(state.cubes.sample_ids)},
+                  {"patches", or_none(state.cubes.patches)},
+                  {"corners", or_none(state.cubes.corners)},
+                  {"bodies", state.cubes.body_table}},
+                 state.params, groups_for(p.fragment_capacity, 128));
+    commands.run(state.device.pass("ldc_top_boxes"),
+                 {{"node_masks", state.node_masks},
+                  {"occupancy_sums", occupancy_sums_},
+                  {"top_table", state.cubes.top_table},
+                  {"bodies", state.cubes.body_table},
+                  {"counters", state.counters},
+                  {"readback", state.readback}},
+                 state.params, groups_for(p.cell_capacity, 64));
 }
 
 /// The tables down to the nodes.
 void VoxelOrder::record_nodes(Commands& commands, const BuildState& state) {
     const LdcParams& p = state.params;
-    commands.run_indirect(state.device.pass("ldc_tops"),
-                          {{"node_masks", state.node_masks},
-                           {"top_table", state.cubes.top_table},
-                           {"top_cells", top_cells_},
-                           {"counters", state.counters}},
-                          p, state.groups, LDC_GROUPS_CELLS * 12);
-    state.record_groups(commands);
-    commands.run_indirect(state.device.pass("ldc_nodes"),
-                          {{"counters", state.counters},
-                           {"node_masks", state.node_masks},
-                           {"top_cells", top_cells_},
-                           {"node_table", state.cubes.node_table},
-                           {"node_cells", node_cells_},
-                           {"bodies", state.cubes.body_table}},
-                          p, state.groups, LDC_GROUPS_OCCUPIED * 12);
+    commands.run(state.device.pass("ldc_tops"),
+                 {{"node_masks", state.node_masks},
+                  {"top_table", state.cubes.top_table},
+                  {"top_cells", top_cells_},
+                  {"counters", state.counters}},
+                 p, groups_for(p.cell_capacity, 256));
+    commands.run(state.device.pass("ldc_nodes"),
+                 {{"counters", state.counters},
+                  {"node_masks", state.node_masks},
+                  {"top_cells", top_cells_},
+                  {"node_table", state.cubes.node_table},
+                  {"node_cells", node_cells_},
+                  {"bodies", state.cubes.body_table}},
+                 p, groups_for(p.occupied_capacity, 1));
 }
 
 /// Prefix sums along an axis of the summed-volume table of occupied 16³ cells.
 void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32_t axis) {
     LdcParams p = state.params;
     p.axis = axis;
-    commands.run_indirect(state.device.pass("ldc_sat_scan"),
-                          {{"node_masks", state.node_masks},
-                           {"occupancy_sums", occupancy_sums_},
-                           {"bodies", state.cubes.body_table},
-                           {"counters", state.counters}},
-                          p, state.groups, (LDC_GROUPS_LINES + axis) * 12);
+    commands.run(state.device.pass("ldc_sat_scan"),
+                 {{"node_masks", state.node_masks},
+                  {"occupancy_sums", occupancy_sums_},
+                  {"bodies", state.cubes.body_table},
+                  {"counters", state.counters}},
+                 p, groups_for(p.cell_capacity, 64));
 }
 
 // A stage that overflowed hides the needs of the later ones, which may ask for yet another turn; there are three
@@ -111,11 +133,18 @@ bool VoxelOrder::grow(BuildState& state, const LdcCounters& counts) {
     const uint64_t most = state.most();
     bool grown = grow_capacity(p.cell_capacity, counts.cells, most / 8);
     // Of these the tables hold those of earlier builds as well.
-    grown |=
-        grow_capacity(p.fragment_capacity, counts.fragments, left_of(most / sizeof(LdcFragment), state.before.samples));
+    grown |= grow_capacity(p.fragment_capacity, counts.fragments, most_samples(state));
     grown |= grow_capacity(p.occupied_capacity, counts.occupied, left_of(most / 256, state.before.occupied));
     grown |= grow_capacity(p.node_capacity, counts.nodes, left_of(most / 256, state.before.nodes));
     return grown;
+}
+
+void VoxelOrder::settle(BuildState& state, const LdcCounters& counts) {
+    LdcParams& p = state.params;
+    settle_capacity(p.cell_capacity, counts.cells);
+    settle_capacity(p.fragment_capacity, counts.fragments);
+    settle_capacity(p.occupied_capacity, counts.occupied);
+    settle_capacity(p.node_capacity, counts.nodes);
 }
 
 uint64_t VoxelOrder::bytes() const {

@@ -12,6 +12,7 @@ class VoxelOrder : public BuildStage {
     void clear(Commands& commands, const BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
     bool grow(BuildState& state, const LdcCounters& counts) override;
+    void settle(BuildState& state, const LdcCounters& counts) override;
     uint64_t bytes() const override;
 
   private:

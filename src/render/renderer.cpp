@@ -32,11 +32,13 @@ void describe_view(Frame& frame, const View& view) {
 
 }  // namespace
 
-CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
+CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings) {
     CubeChoice choice{settings.ldc,      settings.hit,       settings.rebuild,
                       settings.ldc_each, settings.tolerance, settings.layout};
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
-    if (settings.hit_auto) choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
+    const uint64_t most = choice.layout.by_pixel() ? ~0ull : most_exact_triangles(device);
+    if (settings.hit_auto)
+        choice.hit = triangles > std::min<uint64_t>(4'000'000, most) ? HitTest::planar : HitTest::exact;
     // Peeling captures pixel centres.
     if (settings.hit_auto && choice.layout.builder == BuilderKind::peel) choice.hit = HitTest::planar;
     return choice;
@@ -155,7 +157,7 @@ void Renderer::Impl::prepare_images() {
 void Renderer::Impl::prepare_cubes() {
     uint32_t triangles = 0;
     for (const Assembly::Body& body : assembly.bodies) triangles += body.triangles;
-    CubeChoice choice = choose_automatically(triangles, settings);
+    CubeChoice choice = choose_automatically(device, triangles, settings);
     // Whoever traces nothing is not told what a cube cannot hold.
     if (settings.tracer != Tracer::ldc && choice.hit == HitTest::tolerance) choice.hit = HitTest::planar;
     hit = choice.hit;
@@ -394,12 +396,13 @@ void Renderer::Impl::record_shadows() {
     } else {
         bindings = with_alpha_test(bindings, scene.triangles);
     }
+    const auto [instances, bare] = instance_constants(traced());
     const Pass& pass =
         device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
                         (settings.layout.by_pixel() ? "_pixels" : ""),
                     {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
-                     scene.triangles.masks && hit == HitTest::exact, instance_constant(scene.instances),
-                     device.immediate, counter != nullptr});
+                     scene.triangles.masks && cubes->cubes().tests_triangles(), instances, device.immediate,
+                     counter != nullptr, bare});
     commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(),
                           PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }

@@ -86,7 +86,7 @@ struct RenderResult : Picture {
 };
 
 /// What `auto` stands for in a scene of so many triangles.
-CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings);
+CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings);
 
 /// Renders pictures of one scene, in the moments it is put into; keeps its buffers and cubes from picture to picture.
 class Renderer {

@@ -20,6 +20,12 @@ float longest_side(const Assembly::Body& body) {
     return std::max({size.x, size.y, size.z, 0.0f});
 }
 
+/// Not of corners that builds drop (shaders/bounds.glsl).
+bool is_bounded(const Assembly::Body& body) {
+    const glm::vec3 far = glm::max(glm::abs(body.lower), glm::abs(body.upper));
+    return std::max({far.x, far.y, far.z}) < 1e30f;
+}
+
 uint32_t in_sixteens(float voxels) {
     return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
 }
@@ -31,6 +37,10 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
         bodies.push_back({body.first_triangle, body.triangles, resolutions[i], body.lower, body.upper, 0});
+        // What a ray would have to do to enter a cube costs more than a few triangles.
+        bodies.back().bare = body.triangles >= 1 && body.triangles <= PEELRAY_BARE_TRIANGLES && is_bounded(body) &&
+                             choice.hit != HitTest::tolerance && !choice.layout.by_pixel() &&
+                             choice.layout.builder == BuilderKind::compute;
         if (choice.hit != HitTest::tolerance) continue;
         bodies.back().tolerance = choice.tolerance / scales[i];
         const float voxel = make_grid(body.lower, body.upper, resolutions[i]).voxel;
@@ -79,7 +89,9 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
         // Exact hits need no finer voxels than a sixteenth of a triangle's edge, whatever is asked for.
         if (choice.hit == HitTest::exact)
             resolution = std::min(resolution, in_sixteens(16 * std::sqrt(float(body.triangles))));
-        if (by_triangles) resolution = serving_resolution(body.triangles, choice.rebuild || i >= assembly.fixed);
+        if (by_triangles)
+            resolution = serving_resolution(body.triangles, longest_side(body), body.inverse_edges,
+                                            choice.rebuild || i >= assembly.fixed);
         resolutions.push_back(resolution);
     }
     return resolutions;
@@ -123,13 +135,15 @@ SceneCubes::Stats SceneCubes::stats() const {
     Stats stats;
     stats.bodies = uint32_t(cubes_.bodies().size());
     stats.fixed = fixed_;
+    for (const CubeBody& body : cubes_.bodies()) stats.bare += body.bare;
     if (choice_.ldc != 0)
         stats.resolution = round_resolution(choice_.ldc);
     else
-        for (const CubeBody& body : cubes_.bodies()) stats.resolution = std::max(stats.resolution, body.resolution);
+        for (const CubeBody& body : cubes_.bodies())
+            if (!body.bare) stats.resolution = std::max(stats.resolution, body.resolution);
     stats.counts = builder_ ? sum_of(fixed_counts_, builder_->counts()) : fixed_counts_;
-    stats.bytes = (fixed_size_ + (builder_ ? builder_->size() : TableSize{})).bytes() +
-                  cubes_.bodies().size() * (sizeof(LdcBody) + 24);
+    stats.bytes = (fixed_size_ + (builder_ ? builder_->size() : TableSize{})).bytes(cubes_.sample_bytes()) +
+                  cubes_.bodies().size() * (sizeof(LdcBody) + 24) + cubes_.corners.bytes();
     stats.scratch_bytes = builder_ ? builder_->scratch_bytes() : 0;
     stats.redone = fixed_redone_ + (builder_ ? builder_->redone() : 0);
     return stats;

@@ -45,9 +45,11 @@ class SceneCubes {
 
     struct Stats {
         uint32_t bodies = 0, fixed = 0;  ///< fixed: built once
-        uint32_t resolution = 0;         ///< what was asked for, or the largest of all
-        LdcCounters counts{};            ///< of all bodies; longest: the longest list of all
-        uint64_t bytes = 0;              ///< of the tables in use
+        uint32_t bare = 0;               ///< of the bodies, those without a cube (CubeBody::bare)
+        uint32_t cubes() const { return bodies - bare; }
+        uint32_t resolution = 0;  ///< what was asked for, or the largest of all
+        LdcCounters counts{};     ///< of all bodies; longest: the longest list of all
+        uint64_t bytes = 0;       ///< of the tables in use
         uint64_t scratch_bytes = 0;
         uint32_t redone = 0;  ///< how often a build did not fit and was done again
     };

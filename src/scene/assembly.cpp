@@ -39,7 +39,7 @@ Part part_of(const Primitive& primitive, const Deformed& vertices) {
         const glm::vec3 &a = vertices.positions[t.x], &b = vertices.positions[t.y], &c = vertices.positions[t.z];
         part.lower = glm::min(part.lower, glm::min(a, glm::min(b, c)));
         part.upper = glm::max(part.upper, glm::max(a, glm::max(b, c)));
-        part.area += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
+        part.area += 0.5 * glm::length(glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)));
     }
     return part;
 }
@@ -221,6 +221,7 @@ class Assembler {
             out_.colors.insert(out_.colors.end(), primitive.colors.begin(), primitive.colors.end());
             out_.colors.resize(out_.positions.size(), glm::vec4(1));
         }
+        body.inverse_edges += inverse_edges(primitive.triangles.size(), part_of(primitive, vertices).area);
         for (size_t i = 0; i < primitive.triangles.size(); i++) {
             glm::uvec3 t = primitive.triangles[i];
             if (vertices.mirrors) std::swap(t.y, t.z);
@@ -321,9 +322,15 @@ class Assembler {
 
 }  // namespace
 
-uint32_t serving_resolution(uint64_t triangles, bool rebuilt) {
-    // Measured on meshes of 7 thousand to 10 million triangles: docs/performance.md.
-    const double voxels = (rebuilt ? 4.25 : 6) * std::cbrt(double(triangles));
+double inverse_edges(uint64_t triangles, double area) {
+    return triangles == 0 ? 0 : double(triangles) / std::sqrt((area > 1e-60 ? area : 1e-60) / double(triangles));
+}
+
+uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt) {
+    // A round body has 3.4 times the area of a square across it; what was measured (docs/performance.md) are such.
+    const double count = double(triangles), across = longest * inverse_edges / std::max(count, 1.0);
+    const double spread = std::clamp(3.4 * across * across, count, 16 * count);
+    const double voxels = (rebuilt ? 3.25 : 6) * std::cbrt(spread);
     return uint32_t(std::clamp(std::ceil(voxels / 16), 1.0, 64.0)) * 16;
 }
 

@@ -12,6 +12,7 @@ struct Assembly {
     struct Body {
         uint32_t first_triangle = 0, triangles = 0, first_vertex = 0, vertices = 0;
         glm::vec3 lower{0}, upper{0};  ///< in its own space; of one that deforms: in the scene's present moment
+        double inverse_edges = 0;      ///< sum of 1 / edge over its triangles (inverse_edges), for serving_resolution
     };
 
     /// A body and where it stands: in the space of a node, in which it is moved by `offset`.
@@ -37,22 +38,29 @@ struct Assembly {
     std::vector<uint32_t> materials, ids, objects;  ///< one per triangle
 
     std::vector<Body> bodies;
-    uint32_t fixed = 0;                ///< bodies whose shape never changes
-    std::vector<Instance> instances;   ///< in the order of their bodies
-    std::vector<Piece> pieces;         ///< in the order of their vertices
-    bool generates = false;            ///< what is generated moves: Scene::generated
-    std::vector<Piece> waters;         ///< of Scene::generated.waters, while they move
-    uint64_t shown = 0;                ///< triangles with all instances
+    uint32_t fixed = 0;               ///< bodies whose shape never changes
+    std::vector<Instance> instances;  ///< in the order of their bodies
+    std::vector<Piece> pieces;        ///< in the order of their vertices
+    bool generates = false;           ///< what is generated moves: Scene::generated
+    std::vector<Piece> waters;        ///< of Scene::generated.waters, while they move
+    uint64_t shown = 0;               ///< triangles with all instances
 };
 
-/// Voxels along the longest side of a cube that serves a body of so many triangles well: 16 to 1024, a multiple of 16.
+/// Sum of 1 / edge over `triangles` triangles of `area` in all, taken as if they were equal: edge is the root of a
+/// triangle's area.
+double inverse_edges(uint64_t triangles, double area);
+
+/// Voxels along the longest side of a cube that serves a body well: 16 to 1024, a multiple of 16. By the number of its
+/// triangles, where they are spread over all of it; where they crowd in parts of it, as many as if all of it were
+/// divided so finely (sixteen times as many at most). `inverse_edges`: in the units of `longest`, its longest side.
 /// Exact hits do not depend on it: it is chosen for speed. One that is built for every frame is the coarser for it.
-uint32_t serving_resolution(uint64_t triangles, bool rebuilt = false);
+uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt = false);
 
 /// Takes the scene apart so that as little as possible has to be rebuilt for every moment of `motion` (the paper,
 /// section 1.2.1): what stands still, and what moves as one without changing its shape, goes into bodies that are built
 /// once; equal meshes share one where that pays; a body is split where a part of it would get much finer voxels
-/// from a cube of its own, so that a large ground does not cost a small object its resolution. Throws Error as flatten() does.
+/// from a cube of its own, so that a large ground does not cost a small object its resolution. Throws Error as
+/// flatten() does.
 Assembly assemble(const Scene& scene, const Motion& motion);
 
 }  // namespace peelray

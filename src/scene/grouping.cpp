@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "peelray/cube.h"
 #include "scene/assembly.h"
 
 namespace peelray {
@@ -11,11 +12,15 @@ namespace {
 /// Costs relative to each other: of a ray's start in a cube whose box it meets, of a look at one sample in the lists
 /// that it meets near a surface, and of finding out which of two boxes it meets.
 constexpr double kStart = 4, kSample = 2, kBoxes = 1;
+/// The same of testing the few triangles of a bare body (CubeBody::bare).
+constexpr double kBare = 1;
 /// Share of the cost that a split must save.
 constexpr double kGain = 0.1;
 /// Share of all rays that both groups of a split must have: for a few rays no cube is worth its start.
 constexpr double kLeastWeight = 0.02;
 constexpr int kDeepest = 8;  // 256 groups at most
+/// Parts that become bare bodies of their own before all else: every ray looks at their boxes.
+constexpr size_t kMostBare = 6;
 
 double half_area(const glm::vec3& lower, const glm::vec3& upper) {
     const glm::dvec3 s = glm::dvec3(upper) - glm::dvec3(lower);
@@ -31,6 +36,7 @@ class Extent {
         upper_ = glm::max(upper_, part.upper);
         triangles_ += part.triangles;
         const double edge = std::sqrt(std::max(part.area, 1e-60) / double(std::max<uint64_t>(part.triangles, 1)));
+        inverse_edges_ += inverse_edges(part.triangles, part.area);
         weight_ += weight;
         by_edge_ += weight / edge;
         by_edge2_ += weight / (edge * edge);
@@ -39,24 +45,30 @@ class Extent {
     /// Of all rays that are after its parts, in one cube. Near a part's surface a ray meets voxels with the triangles
     /// that touch them: (1 + h / e)² of edge length e at a voxel's edge h.
     double cost() const {
+        if (is_bare()) return kBare * weight_;
         const glm::vec3 size = upper_ - lower_;
-        const double h = std::max({size.x, size.y, size.z}) / double(serving_resolution(triangles_));
+        const double longest = std::max({size.x, size.y, size.z});
+        const double h = longest / double(serving_resolution(triangles_, longest, inverse_edges_));
         return kStart * weight_ + kSample * (weight_ + 2 * h * by_edge_ + h * h * by_edge2_);
     }
+    /// Of one more ray that meets its box.
+    double start() const { return is_bare() ? kBare : kStart; }
     double weight() const { return weight_; }
     double area() const { return half_area(lower_, upper_); }
 
   private:
+    bool is_bare() const { return triangles_ <= PEELRAY_BARE_TRIANGLES; }
+
     glm::vec3 lower_{INFINITY}, upper_{-INFINITY};
     uint64_t triangles_ = 0;
-    double weight_ = 0, by_edge_ = 0, by_edge2_ = 0;
+    double inverse_edges_ = 0, weight_ = 0, by_edge_ = 0, by_edge2_ = 0;
 };
 
 /// Of all rays that are after two sets of parts, beside what each set's rays cost in its own cubes: they find out which
 /// boxes they meet, and start in the other's cube as well if they meet its box.
 double cost_of_both(const Extent& all, const Extent& a, const Extent& b) {
     const double area = std::max(all.area(), 1e-60);
-    return kBoxes * all.weight() + kStart * (a.weight() * b.area() + b.weight() * a.area()) / area;
+    return kBoxes * all.weight() + (a.weight() * b.start() * b.area() + b.weight() * a.start() * a.area()) / area;
 }
 
 class Grouping {
@@ -77,6 +89,16 @@ class Grouping {
         double cost = 0;
         std::vector<std::vector<uint32_t>> groups;
     };
+
+    /// The largest of the parts that can be bare, if enough rays are after them.
+    std::vector<uint32_t> bare() const {
+        std::vector<uint32_t> found;
+        for (uint32_t i = 0; i < parts_.size(); i++)
+            if (parts_[i].triangles <= PEELRAY_BARE_TRIANGLES && weights_[i] >= kLeastWeight) found.push_back(i);
+        std::stable_sort(found.begin(), found.end(), [&](uint32_t a, uint32_t b) { return weights_[a] > weights_[b]; });
+        if (found.size() > kMostBare) found.resize(kMostBare);
+        return found;
+    }
 
     /// Splits as far as it goes, then takes back what does not pay: that it does may show only after several splits (a
     /// square town has to be split along both of its sides).
@@ -146,9 +168,14 @@ class Grouping {
 
 std::vector<std::vector<uint32_t>> group_parts(const std::vector<Part>& parts) {
     if (parts.empty()) return {};
-    std::vector<uint32_t> all(parts.size());
-    for (uint32_t i = 0; i < all.size(); i++) all[i] = i;
-    std::vector<std::vector<uint32_t>> groups = Grouping(parts).split(std::move(all), 0).groups;
+    const Grouping grouping(parts);
+    const std::vector<uint32_t> bare = grouping.bare();
+    std::vector<uint32_t> others;
+    for (uint32_t i = 0; i < parts.size(); i++)
+        if (std::find(bare.begin(), bare.end(), i) == bare.end()) others.push_back(i);
+    std::vector<std::vector<uint32_t>> groups;
+    if (!others.empty()) groups = grouping.split(std::move(others), 0).groups;
+    for (const uint32_t i : bare) groups.push_back({i});
     for (auto& group : groups) std::sort(group.begin(), group.end());
     std::sort(groups.begin(), groups.end());
     return groups;

@@ -1,6 +1,7 @@
 // A triangle as an LDI sees it: normal, axis, projection, coverage, depth range and packing, against double precision.
 #include "exact_clip.h"
 #include "probe_fixture.h"
+#include "sample_plane.h"
 
 namespace peelray {
 namespace {
@@ -154,7 +155,8 @@ struct PixelOut {
     vec3 edges;
     uint32_t covers;
     ivec2 depth;
-    uvec2 packed;
+    glm::uvec4 packed;
+    uint32_t touches;
 };
 
 class LdcPixelProbe : public ProbeTest {
@@ -278,6 +280,32 @@ TEST_F(LdcPixelProbe, DepthRangesHoldTheTriangleAndLittleMore) {
     }
 }
 
+TEST_F(LdcPixelProbe, VoxelsTouchedAreThoseOfExactClippingAndAThinSlack) {
+    const auto in = inputs(false);
+    const auto out = probe<PixelOut>("probe_ldc_pixel", in);
+    size_t touched = 0, free = 0;
+    for (size_t i = 0; i < in.size(); i++) {
+        const auto t = corners(in[i]);
+        const dvec3 lo(in[i].pixel.x, in[i].pixel.y, in[i].voxel_w), centre = lo + 0.5;
+        if (!clip_box(Polygon(t.begin(), t.end()), lo, lo + 1.0, 3).empty()) {
+            touched++;
+            ASSERT_TRUE(out[i].touches) << i;
+        }
+        std::array<dvec3, 3> along_u, along_v;
+        for (size_t k = 0; k < 3; k++) {
+            along_u[k] = {t[k].y, t[k].z, 0};
+            along_v[k] = {t[k].z, t[k].x, 0};
+        }
+        if (edge_distance(along_u, {centre.y, centre.z}, 0.5) < -4e-3 ||
+            edge_distance(along_v, {centre.z, centre.x}, 0.5) < -4e-3) {
+            free++;
+            ASSERT_FALSE(out[i].touches) << i;
+        }
+    }
+    EXPECT_GT(touched, 10000u);
+    EXPECT_GT(free, 5000u);
+}
+
 TEST_F(LdcPixelProbe, PackedSamplesDecodeWithinTheirBounds) {
     for (const bool planar : {false, true}) {
         const auto in = inputs(planar);
@@ -285,25 +313,25 @@ TEST_F(LdcPixelProbe, PackedSamplesDecodeWithinTheirBounds) {
         double worst_w = 0, worst_slope = 0;
         size_t clamped = 0;
         for (size_t i = 0; i < in.size(); i++) {
-            const uvec2 data = out[i].packed;
-            const double w = double(data.x & 0xffff) * 5 / 65535 - 2,
-                         true_w = plane(in[i], dvec2(in[i].pixel) + 0.5) - in[i].voxel_w;
-            if (true_w > -2 && true_w < 3) {
+            const glm::uvec4 data = out[i].packed;
+            const test::SamplePlane stored = planar ? test::plane_of_sample(uvec2(data)) : test::plane_of_patch(data);
+            const double true_w = plane(in[i], dvec2(in[i].pixel) + 0.5) - in[i].voxel_w - 0.5;
+            if (!planar || std::abs(true_w) < 2.5) {
                 // Corners are floats up to 128: their rounding is not the packing's.
-                worst_w = std::max(worst_w, std::abs(w - true_w) - 1e-7 * 256);
+                worst_w = std::max(worst_w, std::abs(stored.w - true_w) - 1e-7 * 256);
             } else {
                 clamped++;
-                ASSERT_EQ(w, true_w < 0 ? -2 : 3);
+                ASSERT_EQ(stored.w, true_w < 0 ? -2.5f : 2.5f);
             }
-            const auto slope = [](uint32_t bits) { return double(int32_t(bits << 18) >> 18) * 1.25 / 8191; };
-            worst_slope = std::max(
-                {worst_slope, std::abs(slope(data.y) - in[i].slope.x), std::abs(slope(data.y >> 14) - in[i].slope.y)});
-            ASSERT_EQ(data.y >> 28 & 3, 2u);
-            ASSERT_EQ(data.y >> 30, 0u) << "no last bit yet";
-            ASSERT_TRUE(!planar || data.x >> 16 == 0) << "no coverage";
+            ASSERT_EQ(stored.normal.z, 1);
+            ASSERT_TRUE(stored.normal.x != 1 && stored.normal.y != 1) << "that would be the axis";
+            worst_slope = std::max({worst_slope, std::abs(double(stored.normal.x) + in[i].slope.x),
+                                    std::abs(double(stored.normal.y) + in[i].slope.y)});
+            ASSERT_TRUE(planar ? data.y >> 31 : data.z & 1) << "the last of its list";
+            ASSERT_TRUE(planar || data.w == (7u << 2 | 2));
         }
-        EXPECT_LE(worst_w, 4e-5 * 1.1);
-        EXPECT_LE(worst_slope, 7.7e-5);
+        EXPECT_LE(worst_w, planar ? 7.7e-5 : 2e-5);
+        EXPECT_LE(worst_slope, 7.4e-4) << "half floats up to 1.25, of which only the axis's may be 1";
         EXPECT_LT(clamped, in.size() / 20);
     }
 }
@@ -317,7 +345,7 @@ TEST_F(LdcPixelProbe, CoverageBitsHoldEveryPointOfTheTriangle) {
         const Polygon inside = in_pixel(in[i]);
         if (inside.empty()) continue;
         for (int cell = 0; cell < 16; cell++) {
-            const bool bit = out[i].packed.x >> (16 + cell) & 1;
+            const bool bit = out[i].packed.y >> (16 + cell) & 1;
             const dvec3 lo = dvec3(in[i].pixel, 0) + 0.25 * dvec3(cell % 4, cell / 4, 0);
             const bool touched = !clip_box(inside, lo, lo + 0.25, 2).empty();
             // Not farther than the declared 0.03 pixels along both axes (times √2 across a diagonal edge).

@@ -47,7 +47,7 @@ std::string name_of(const Builder& builder, Sampling sampling, Traversal travers
 struct Found {
     uint32_t id;         ///< triangle · 4 + axis, of the whole triangle buffer
     glm::uvec3 cell;     ///< u, v and, by voxel, w
-    glm::uvec2 data{0};  ///< by voxel: as it is stored
+    glm::uvec4 data{0};  ///< by voxel: as it is stored
     float w = 0;         ///< by pixel
 
     auto key() const { return std::tuple(id, cell.y, cell.x, cell.z); }
@@ -90,7 +90,6 @@ class BuildersTest : public DeviceTest {
             for (const auto& s : decoded.samples) {
                 const uint32_t axis = s.id & 3;
                 found.push_back({s.id, {s.voxel[(axis + 1) % 3], s.voxel[(axis + 2) % 3], s.voxel[axis]}, s.data, 0});
-                found.back().data.y &= ~(1u << 30);  // where a list ends depends on what else is in it
             }
         }
         std::sort(found.begin(), found.end(), [](auto& a, auto& b) { return a.key() < b.key(); });

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "../gpu/sample_plane.h"
 #include "cpu_raster.h"
 #include "gpu/commands.h"
 
@@ -15,16 +16,27 @@ namespace peelray::test {
 struct Tables {
     std::vector<glm::uvec2> top, samples;
     std::vector<uint32_t> node, voxel, ids;
+    std::vector<glm::uvec4> patches;                 ///< instead of samples and ids
     bool operator==(const Tables&) const = default;  ///< byte for byte
+
+    size_t sample_count() const { return patches.empty() ? ids.size() : patches.size(); }
 };
 
 /// All that builds of `size` in all left in the tables.
 inline Tables download(Commands& commands, const Cubes& cubes, const TableSize& size) {
-    return {commands.download<glm::uvec2>(cubes.top_table, size.cells),
-            commands.download<glm::uvec2>(cubes.samples, size.samples),
-            commands.download<uint32_t>(cubes.node_table, size.occupied * 64),
-            commands.download<uint32_t>(cubes.voxel_table, size.nodes * 64),
-            commands.download<uint32_t>(cubes.sample_ids, size.samples)};
+    Tables tables{commands.download<glm::uvec2>(cubes.top_table, size.cells),
+                  {},
+                  commands.download<uint32_t>(cubes.node_table, size.occupied * 64),
+                  commands.download<uint32_t>(cubes.voxel_table, size.nodes * 64),
+                  {},
+                  {}};
+    if (cubes.has_patches()) {
+        tables.patches = commands.download<glm::uvec4>(cubes.patches, size.samples);
+    } else {
+        tables.samples = commands.download<glm::uvec2>(cubes.samples, size.samples);
+        tables.ids = commands.download<uint32_t>(cubes.sample_ids, size.samples);
+    }
+    return tables;
 }
 
 /// Walks the tables of one body; every fault becomes a test failure.
@@ -33,7 +45,7 @@ class DecodedCube {
     struct Sample {
         glm::uvec3 voxel;
         uint32_t id;
-        glm::uvec2 data;  ///< without the bit that ends its list
+        glm::uvec4 data;  ///< without the bit that ends its list, and without the id
         bool operator==(const Sample&) const = default;
     };
     std::vector<Sample> samples;  ///< those of a voxel by id
@@ -43,7 +55,7 @@ class DecodedCube {
     DecodedCube(const LdcBody& body, const Tables& tables)
         : body_(body),
           tables_(tables),
-          used_(tables.ids.size()),
+          used_(tables.sample_count()),
           top_seen_(tables.node.size() / 64),
           tops_(body.grid.dims / 16u) {
         decode();
@@ -132,12 +144,18 @@ class DecodedCube {
     void decode_list(const glm::uvec3& voxel, uint32_t first) {
         std::vector<Sample> list;
         for (uint32_t j = first;; j++) {
-            ASSERT_LT(j, tables_.ids.size()) << "a list without a last sample";
+            ASSERT_LT(j, tables_.sample_count()) << "a list without a last sample";
             ASSERT_FALSE(used_[j]) << "two lists share a sample";
             used_[j] = true;
+            if (!tables_.patches.empty()) {
+                const glm::uvec4 data = tables_.patches[j];
+                list.push_back({voxel, data.w, {data.x, data.y, data.z & ~1u, 0}});
+                if (data.z & 1) break;
+                continue;
+            }
             const glm::uvec2 data = tables_.samples[j];
-            list.push_back({voxel, tables_.ids[j], {data.x, data.y & ~(1u << 30)}});
-            if (data.y >> 30 & 1) break;
+            list.push_back({voxel, tables_.ids[j], {data.x, data.y & 0x7fffffff, 0, 0}});
+            if (data.y >> 31) break;
         }
         longest = std::max(longest, uint32_t(list.size()));
         std::sort(list.begin(), list.end(), [](const Sample& a, const Sample& b) { return a.id < b.id; });

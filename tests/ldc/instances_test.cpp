@@ -21,7 +21,7 @@ class InstancesTest : public DeviceTest {
         add(torus({0.5f, 2, 0}, 1, 0.3f, 24, 12));  // far from its own origin
         add(box({-1, -0.2f, -1}, {1, 0.2f, 1}));
     }
-    void add(const Primitive& shape) {
+    void add(const Primitive& shape, bool bare = false) {
         const auto first = uint32_t(positions_.size());
         CubeBody body{uint32_t(triangles_.size()), uint32_t(shape.triangles.size()), 32, vec3(INFINITY),
                       vec3(-INFINITY)};
@@ -34,7 +34,19 @@ class InstancesTest : public DeviceTest {
             triangles_.push_back(t + first);
             ids_.push_back(uint32_t(triangles_.size()) - 1 - body.first_triangle);
         }
+        body.bare = bare;
         bodies_.push_back(body);
+    }
+    /// Bodies 3, 4 and 5: a square across y, one triangle, and the four of a tetrahedron.
+    void add_bare() {
+        Primitive square, triangle, tetrahedron;
+        square.positions = {{-2, -1, -2}, {2, -1, -2}, {2, -1, 2}, {-2, -1, 2}};
+        square.triangles = {{0, 2, 1}, {0, 3, 2}};
+        triangle.positions = {{3, 0.1f, 0}, {4, 1.2f, 0.3f}, {3.2f, 0.5f, 1.7f}};
+        triangle.triangles = {{0, 1, 2}};
+        tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        tetrahedron.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+        for (const Primitive& shape : {square, triangle, tetrahedron}) add(shape, true);
     }
 
     struct Placed {
@@ -223,6 +235,69 @@ TEST_F(InstancesTest, OfAnyNumberAreFoundByRays) {
         expect_hierarchy(*world);
         expect_right(*world, flat(placed), 4000);
     }
+}
+
+TEST_F(InstancesTest, OfBareBodiesAreFoundByRaysAndHaveNoCube) {
+    add_bare();
+    const glm::mat4 still(1), aside = glm::translate(still, vec3(3, 0.5f, -1));
+    const glm::mat4 turned = glm::rotate(aside, 0.7f, glm::normalize(vec3(1, 2, 3)));
+    // Alone, with one cube and with several, before and behind them, moved and not; more than eight have a hierarchy.
+    const std::vector<std::vector<Placed>> scenes = {{{3, still}},
+                                                     {{5, turned}},
+                                                     {{0, still}, {3, still}},
+                                                     {{3, still}, {4, still}, {0, aside}, {2, still}, {5, turned}},
+                                                     {{4, turned}, {3, turned}, {5, still}, {4, still}},
+                                                     scatter(60, 9, 4)};
+    for (std::vector<Placed> placed : scenes) {
+        SCOPED_TRACE(testing::Message() << placed.size() << " instances");
+        if (placed.size() > 8)
+            for (size_t i = 0; i < placed.size(); i += 2) placed[i].body = 3 + uint32_t(i / 2 % 3);
+        const auto world = place(placed);
+        expect_hierarchy(*world);
+        expect_right(*world, flat(placed), 4000);
+    }
+    // As much is built as without them.
+    const auto with = place({{0, still}}), boxed = [&] {
+        for (CubeBody& body : bodies_) body.bare = false;
+        return place({{0, still}});
+    }();
+    bodies_.resize(3);
+    const auto without = place({{0, still}});
+    EXPECT_EQ(with->builder.counts().fragments, without->builder.counts().fragments);
+    EXPECT_EQ(with->builder.counts().cells, without->builder.counts().cells);
+    EXPECT_GT(boxed->builder.counts().fragments, without->builder.counts().fragments);
+}
+
+TEST_F(InstancesTest, OneCubeThatStandsNowhereBesideABareBodyIsNotWalkedThrough) {
+    add_bare();
+    const auto world = place({{3, glm::mat4(1)}, {0, glm::scale(glm::mat4(1), vec3(NAN))}});
+    test::RaySource source(flat({{3, glm::mat4(1)}}), 3);
+    std::vector<Ray> rays(2000);
+    for (Ray& ray : rays) ray = source.make(test::RayKind::uniform);
+    rays.push_back({{0.5f, 4, 0.2f}, 0, {0, -1, 0}, INFINITY});
+    const auto hits = trace(*world, rays);
+    for (const FileHit& hit : hits) EXPECT_TRUE(hit.triangle == ~0u || hit.triangle < 2u) << hit.triangle;
+    EXPECT_LT(hits.back().triangle, 2u);
+}
+
+TEST_F(InstancesTest, RaysThatLeaveABareBodyDoNotMeetItAgain) {
+    add_bare();
+    const auto world = place({{3, glm::mat4(1)}, {0, glm::mat4(1)}});
+    const vec3 on_it(1.7f, -1, 0.4f);
+    const std::vector<Ray> rays = {
+        {on_it, 0, {0, 1, 0}, INFINITY},            // along the normal
+        {on_it, 0, {0.3f, 1e-6f, 0.2f}, INFINITY},  // nearly in its plane
+        {on_it, 1e-3f, {0, -1, 0}, INFINITY},      {{1.7f, 4, 0.4f}, 0, {0, -1, 0}, INFINITY},
+        {{1.7f, 4, 0.4f}, 0, {0, -1, 0}, 4.99f},   {{1.7f, 4e6f, 0.4f}, 0, {0, -1, 0}, INFINITY},  // from far away
+        {{0, 4, 0}, 0, {0, -1, 0}, INFINITY}};  // the sphere is before it
+    std::vector<SurfaceId> skip(rays.size(), {~0u, ~0u});
+    skip[0] = skip[1] = {0, bodies_[3].first_triangle};
+    const auto hits = trace(*world, rays, false, skip);
+    for (const size_t missing : {0, 1, 2, 4}) EXPECT_EQ(hits[missing].triangle, ~0u) << missing;
+    for (const size_t found : {3, 5}) EXPECT_LT(hits[found].triangle, 2u) << found;
+    EXPECT_FLOAT_EQ(hits[3].t, 5);
+    EXPECT_FLOAT_EQ(hits[5].t, 4e6f + 1);
+    EXPECT_GE(hits[6].triangle, 2u);
 }
 
 TEST_F(InstancesTest, BoxesHoldTheirBodies) {

@@ -84,7 +84,7 @@ TEST_F(MaskedCubeTest, CentresInHolesGiveNoSamplesAndOthersStay) {
         const LdcBody body = with.cubes.download_bodies(commands())[0];
         const DecodedCube masked(body, masked_tables), whole(body, whole_tables);
         masked.expect_whole(with.counts());
-        std::map<uint64_t, glm::uvec2> left;
+        std::map<uint64_t, glm::uvec4> left;
         for (const auto& s : masked.samples) left[test::pair_of(body.grid, s.voxel, s.id)] = s.data;
         size_t holes = 0, there = 0, kept = 0, wrong = 0, unsure = 0;
         for (const auto& s : whole.samples) {

@@ -107,7 +107,7 @@ TEST_F(Counters, TablesOfWhatIsBuiltOnceHoldJustWhatTheyMust) {
         return sum;
     };
     // To what the device aligns to.
-    EXPECT_NEAR(double(bytes("the cubes' samples")), double(stats.cubes.counts.fragments) * 8, 65536);
+    EXPECT_NEAR(double(bytes("the cubes' patches")), double(stats.cubes.counts.fragments) * 16, 65536);
     EXPECT_NEAR(double(bytes("the cubes' voxels")), double(stats.cubes.counts.nodes) * 256, 65536);
 }
 

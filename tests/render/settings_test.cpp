@@ -103,12 +103,19 @@ TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {
 
 TEST_F(SettingsTest, AutoChoosesByTriangles) {
     RenderSettings settings;
-    EXPECT_EQ(choose_automatically(1000, settings).hit, HitTest::exact);
-    EXPECT_EQ(choose_automatically(20'000'000, settings).hit, HitTest::planar);
+    EXPECT_EQ(choose_automatically(device(), 1000, settings).hit, HitTest::exact);
+    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).hit, HitTest::planar);
+    // A software device binds 128 MiB: the corners of more triangles than that do not fit.
+    const uint64_t most = most_exact_triangles(device());
+    EXPECT_EQ(most, device().limits().maxStorageBufferRange / 48);
+    if (most < 4'000'000) {
+        EXPECT_EQ(choose_automatically(device(), uint32_t(most), settings).hit, HitTest::exact);
+        EXPECT_EQ(choose_automatically(device(), uint32_t(most) + 1, settings).hit, HitTest::planar);
+    }
     settings.ldc = 77;
-    EXPECT_EQ(choose_automatically(20'000'000, settings).ldc, 77u);
+    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).ldc, 77u);
     settings.hit_auto = false;
-    EXPECT_EQ(choose_automatically(20'000'000, settings).hit, HitTest::exact);
+    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).hit, HitTest::exact);
 }
 
 }  // namespace

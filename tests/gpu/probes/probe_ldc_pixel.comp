@@ -3,7 +3,7 @@
 #include "ldc_common.glsl"
 #include "probe.glsl"
 struct Input { vec3 a, b, c; vec2 slope; ivec2 pixel; uint voxel_w, planar; };
-struct Output { vec3 edges; uint covers; ivec2 depth; uvec2 packed; };
+struct Output { vec3 edges; uint covers; ivec2 depth; uvec4 packed; uint touches; };
 PROBE(Input, Output)
 
 Output probe(Input x) {
@@ -14,6 +14,9 @@ Output probe(Input x) {
     o.edges = ldcEdges(t, centre);
     o.covers = ldcCovers(t, ldcReach(t), centre, sampling) ? 1u : 0u;
     o.depth = ldcDepthRange(t, centre, sampling, 0.0);
-    o.packed = ldcPackSample(t, uvec3(x.pixel, x.voxel_w), 2u, sampling);  // in the z-LDI (u, v, w) is (x, y, z)
+    // In the z-LDI (u, v, w) is (x, y, z).
+    const uvec3 voxel = uvec3(x.pixel, x.voxel_w);
+    o.packed = x.planar != 0u ? uvec4(ldcPackSample(t, voxel, 2u, LDC_BAND, true), 0, 0) : ldcPackPatch(t, voxel, 7u << 2u | 2u, true);
+    o.touches = ldcTouches(t, vec3(voxel) + 0.5) ? 1u : 0u;
     return o;
 }

@@ -1,0 +1,198 @@
+// Traversal by voxel, the part of peelray.glsl that includes it.
+//
+// A cube is walked as an irregular grid (Pérard-Gayot, Kalojanov, Slusallek, Eurographics 2017) on cells that rasterisation made: every
+// empty cell knows an empty box around it, which a ray leaves in one step.
+#ifndef PEELRAY_VOXELS_GLSL
+#define PEELRAY_VOXELS_GLSL
+
+/// What the samples of a list are tested with: where the ray enters and leaves their cell, from the cell's centre, voxels.
+struct PeelraySegment {
+    vec3 enters, leaves;
+};
+
+/// `exact`: may the ray hit the triangle of this sample inside the cell? Conservative: the sample's plane passes between the
+/// segment's ends, and the triangle is in the part of the pixel where the ray meets it.
+bool peelrayMayHit(uvec4 data, PeelraySegment segment) {
+    // The plane's normal along x, y (word 0) and z (low half of word 1): half floats, 1 along its LDI's axis; its distance from the
+    // voxel's centre along that axis (word 2: a float whose lowest bit ends the list); coverage (high half of word 1: 4x4 cells of
+    // the pixel); triangle id * 4 + axis (word 3).
+    const vec3 normal = vec3(unpackHalf2x16(data.x), unpackHalf2x16(data.y).x);
+    const float w = uintBitsToFloat(data.z);
+    const float f0 = dot(normal, segment.enters) - w, f1 = dot(normal, segment.leaves) - w;
+    // Written so that a NaN passes.
+    if (min(f0, f1) > PEELRAY_SEGMENT_SLACK || max(f0, f1) < -PEELRAY_SEGMENT_SLACK) return false;
+    if (!(abs(f0 - f1) > PEELRAY_UNCERTAIN_PLACE)) return true;
+    const vec3 at = mix(segment.enters, segment.leaves, clamp(f0 / (f0 - f1), 0.0, 1.0));
+    const uint axis = data.w & 3u;
+    const vec2 pixel = axis == 0u ? at.yz : (axis == 1u ? at.zx : at.xy);
+    const uvec2 bit = uvec2(clamp(pixel * 4.0 + 2.0, vec2(0), vec2(3)));
+    return (data.y >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
+}
+
+/// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
+/// valid (peelrayTrace), `skip` a triangle that does not count.
+void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
+    const PeelrayInstance place = PEELRAY_INSTANCE(instance);
+    PeelrayLocal r;
+    if (!peelrayEnterCube(place, ray, hit.t, options, r)) return;
+    const uvec3 tops = uvec3(r.last + 1) >> 4u;
+    // Cells are walked in a mirrored space, where the ray goes up along every axis: mirrored coordinates are ~coordinate.
+    const bvec3 up = greaterThanEqual(r.d, vec3(0));
+    const ivec3 mirror = ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1);
+    const vec3 o_inv = r.o * r.inv;
+    // Of a packed box only the end that the ray leaves through is looked at.
+    const uint upper = (up.x ? 3u : 0u) | (up.y ? 12u : 0u) | (up.z ? 48u : 0u);
+    const PeelrayShear shear = peelrayShear(r.d);
+    float s = r.s_begin;
+    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last) ^ mirror;
+    const ivec3 beyond = ivec3(up.x ? r.last.x + 1 : 0, up.y ? r.last.y + 1 : 0, up.z ? r.last.z + 1 : 0);
+    bool found_one = false;
+
+    while (true) {
+        PEELRAY_COUNT(steps);
+        // The cell's entry: a list of samples, or an empty box. `last`: the box's last cell along the ray.
+        const uvec3 at = uvec3(cell ^ mirror);
+        const uvec3 top = at >> 4u;
+        const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
+        ivec3 last;
+        bool more = false;  // the list has samples left
+        uint j = 0u;        // its next sample
+        if ((top_entry.x >> 31u) == 0u) {
+            const uvec3 word = uvec3(up.x ? top_entry.y : top_entry.x, up.y ? top_entry.y : top_entry.x, up.z ? top_entry.y : top_entry.x);
+            last = (ivec3(word.x & 1023u, word.y >> 10u & 1023u, word.z >> 20u & 1023u) << 4 ^ mirror) | 15;
+        } else {
+            uint entry = PEELRAY_NODE(top_entry.y << 6u | (at.z & 12u) << 2u | (at.y & 12u) | (at.x >> 2u & 3u));
+            int scale = 2;
+            if ((entry >> 31u) != 0u) {
+                entry = PEELRAY_VOXEL(entry << 6u | (at.z & 3u) << 4u | (at.y & 3u) << 2u | (at.x & 3u));
+                scale = 0;
+                more = (entry >> 31u) != 0u;
+                j = entry & 0x7fffffffu;
+            }
+            const int inside = more ? 0 : (4 << scale) - 1;
+            const uint ends = (entry >> 6u & upper) | (entry & ~upper);
+            const uvec3 end = more ? uvec3(0) : (uvec3(ends, ends >> 2u, ends >> 4u) & 3u) << scale;
+            last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror) | ((1 << scale) - 1);
+        }
+        const vec3 exits = vec3(last + 1) * abs(r.inv) - o_inv;
+        const float s_out = min(exits.x, min(exits.y, exits.z));
+
+        if (more) {
+            PEELRAY_COUNT(cells);
+            if (options.hit == PEELRAY_EXACT) {
+                PeelraySegment segment;
+                const vec3 from_centre = r.o - (vec3(at) + 0.5);
+                segment.enters = from_centre + s * r.d;
+                segment.leaves = from_centre + min(s_out, r.s_best) * r.d;
+                // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
+                do {
+                    uint candidate = PEELRAY_MISS;
+                    while (more && candidate == PEELRAY_MISS && !(options.any_hit && found_one)) {
+                        PEELRAY_COUNT(samples);
+                        const uvec4 data = PEELRAY_PATCH(j);
+                        more = (data.z & 1u) == 0u;
+                        if (peelrayMayHit(data, segment)) {
+                            const uint id = data.w >> 2u;
+                            if (id != skip) {
+                                if (PEELRAY_DEFER)
+                                    candidate = id;
+                                else if (peelrayTestTriangle(place, ray, id, true, shear, r, hit))
+                                    found_one = true;
+                            }
+                        }
+                        j++;
+                    }
+                    if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, true, shear, r, hit)) found_one = true;
+                } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));
+            } else {
+                const vec3 from_centre = r.o - (vec3(at) + 0.5);
+                while (more) {
+                    PEELRAY_COUNT(samples);
+                    const uvec2 data = PEELRAY_SAMPLE(j);
+                    bool hits;
+                    float s_hit;
+                    if (options.hit == PEELRAY_TOLERANCE) {
+                        // Word 0: the depth in the cell, a float; word 1: axis (bits 0 and 1), last of its list (bit 31).
+                        const uint axis = data.y & 3u;
+                        const float w = uintBitsToFloat(data.x);
+                        hits = peelrayTestDepth(r, r.tolerance[axis], peelrayToLdi(r.o - vec3(at), axis), peelrayToLdi(r.d, axis),
+                                                peelrayToLdi(r.inv, axis), w, s_hit);
+                    } else {
+                        // The plane's normal along x, y (word 0) and z (low half of word 1): half floats, 1 along its LDI's axis and
+                        // nowhere else; its distance from the cell's centre along that axis (bits 16 to 30: [-2.5, 2.5] voxels); last of
+                        // its list (bit 31).
+                        const vec3 normal = vec3(unpackHalf2x16(data.x), unpackHalf2x16(data.y).x);
+                        const float w = float(data.y >> 16u & 0x7fffu) * (5.0 / 32767.0) - 2.5;
+                        s_hit = (w - dot(normal, from_centre)) / dot(normal, r.d);
+                        // The footprint is one of pixels: along the axis it has no bounds.
+                        const vec3 place_in_cell = abs(from_centre + s_hit * r.d);
+                        hits = s_hit > r.s_min && s_hit <= r.s_best && (place_in_cell.x <= PEELRAY_FOOTPRINT || normal.x == 1.0) &&
+                               (place_in_cell.y <= PEELRAY_FOOTPRINT || normal.y == 1.0) &&
+                               (place_in_cell.z <= PEELRAY_FOOTPRINT || normal.z == 1.0);
+                    }
+                    if (hits) {
+                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+                        if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
+                            r.s_best = s_hit;
+                            hit.triangle = id;
+                            found_one = true;
+                        }
+                    }
+                    more = (data.y >> 31u) == 0u;
+                    j++;
+                }
+            }
+            if (options.any_hit && found_one) break;
+        }
+
+        if (s_out >= min(r.s_end, r.s_best)) break;
+        // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the
+        // box.
+        s = max(s, s_out);
+        cell = clamp(ivec3(floor(r.o + s * r.d)) ^ mirror, cell, last);
+        if (exits.x <= exits.y && exits.x <= exits.z)
+            cell.x = last.x + 1;
+        else if (exits.y <= exits.z)
+            cell.y = last.y + 1;
+        else
+            cell.z = last.z + 1;
+        if (any(equal(cell, beyond))) break;
+    }
+    if (found_one) {
+        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
+        hit.instance = instance;
+    }
+}
+
+/// The same in a body that has no cube (PEELRAY_BARE), triangle by triangle. The ray meets its box.
+void peelrayTraceBare(uint instance, PeelrayInstance place, PeelrayRay ray, uint skip, inout PeelrayHit hit) {
+    PeelrayLocal r;
+    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
+    const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
+    r.d = turned * scale;
+    r.s_per_t = place.inv_voxel / scale;
+    r.start = peelrayTurn(place, ray.origin - place.corner);
+    r.s_shift = 0.0;
+    // The cube that it does not have is as good a measure of what is far.
+    const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
+    const vec3 size = vec3(tops) * (16.0 * place.voxel), away = abs(r.start);
+    if (!(max(away.x, max(away.y, away.z)) <= PEELRAY_NEAR_SIZES * max(size.x, max(size.y, size.z)))) {
+        const float enters = peelrayClip(r.start, peelrayInverse(r.d), size).x * scale;
+        const float along = min(max(ray.tmin, enters - 1e-6 * abs(enters)), hit.t);
+        r.s_shift = along * r.s_per_t;
+        r.start = peelrayStartAt(place, ray, along);
+    }
+    r.s_min = ray.tmin * r.s_per_t - r.s_shift;
+    r.s_best = hit.t * r.s_per_t - r.s_shift;
+    const PeelrayShear shear = peelrayShear(r.d);
+    const uint first = place.first_cell & 0x3fffffffu, last = first + (place.first_cell >> 30u);
+    bool found_one = false;
+    for (uint id = first; id <= last; id++)
+        if (id != skip && peelrayTestTriangle(place, ray, id, false, shear, r, hit)) found_one = true;
+    if (found_one) {
+        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
+        hit.instance = instance;
+    }
+}
+
+#endif
