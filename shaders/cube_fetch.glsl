@@ -8,6 +8,7 @@ BUFFER(readonly, CUBE_FIRST_BINDING + 2, uint, voxel_table)
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 3, uvec2, samples)
 BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
 #ifndef PEELRAY_ONLY_PIXELS
+#include "ldc_corners.glsl"
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 48, uvec4, patches)
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 49, LdcCorners, corners)
 #endif

@@ -129,9 +129,11 @@ bool ldcTouches(LdcTriangle t, vec3 centre) {
              any(lessThan(v, min(corner_v, 0.0) - reach_v)) || any(greaterThan(v, max(corner_v, 0.0) + reach_v)));
 }
 
+/// Do the tables hold all cells, or pixels? Otherwise nothing is written to them, and all is redone.
+#define LDC_CELLS_FIT(counts) (counts.cells <= params.cell_capacity)
 /// Did the stages before the samples fit? Otherwise they are all redone.
 #define LDC_FITS(counts) \
-    (counts.cells <= params.cell_capacity && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
+    (LDC_CELLS_FIT(counts) && counts.occupied <= params.occupied_capacity && counts.nodes <= params.node_capacity)
 
 // --- Keys ---
 

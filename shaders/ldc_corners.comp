@@ -10,6 +10,7 @@ BUFFER(readonly, 2, LdcBody, bodies)
 BUFFER_ALIGNED(writeonly, 3, LdcCorners, corners)
 #include "ldc_bodies.glsl"
 #include "ldc_common.glsl"
+#include "ldc_corners.glsl"
 
 void main() {
     if (GLOBAL_INDEX >= params.triangles) return;
@@ -17,5 +18,5 @@ void main() {
     const CubeGrid grid = bodies[ldcBodyOfTriangle(id)].grid;
     const uvec3 indices = triangles[id];
     const vec3 a = positions[indices.x], b = positions[indices.y], c = positions[indices.z];
-    corners[id] = ldcPackCorners(a - grid.origin, b - grid.origin, c - grid.origin, ldcNormal(a, b, c, grid.inv_voxel));
+    corners[id] = ldcPackCorners(grid, a, b, c, ldcNormal(a, b, c, grid.inv_voxel));
 }

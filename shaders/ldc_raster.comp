@@ -19,6 +19,7 @@ BUFFER_ALIGNED(writeonly, 16, LdcCorners, corners)
 #include "base_color_buffers.glsl"
 #include "bounds.glsl"
 #include "ldc_alpha.glsl"
+#include "ldc_corners.glsl"
 #include "ldc_emit.glsl"
 #include "ldc_projected.glsl"
 
@@ -71,7 +72,7 @@ uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace 
 
 void main() {
     const uint id = params.first_triangle + GLOBAL_INDEX;
-    bool valid = GLOBAL_INDEX < params.triangles && counters[0].cells <= params.cell_capacity;
+    bool valid = GLOBAL_INDEX < params.triangles && LDC_CELLS_FIT(counters[0]);
     const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body;
     const LdcPlace place = ldcPlaceOf(body);
     const CubeGrid grid = place.grid;
@@ -88,7 +89,7 @@ void main() {
             valid = false;
         } else {
             normal = ldcNormal(a, b, c, grid.inv_voxel);
-            if (keeps_corners) corners[id] = ldcPackCorners(a - grid.origin, b - grid.origin, c - grid.origin, normal);
+            if (keeps_corners) corners[id] = ldcPackCorners(grid, a, b, c, normal);
             if (normal == vec3(0)) {
                 atomicAdd(counters[0].degenerate, 1u);
                 valid = false;

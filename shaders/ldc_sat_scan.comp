@@ -12,7 +12,7 @@ BUFFER(readonly, 3, LdcCounters, counters)
 
 void main() {
     const uint axis = params.axis, index = GLOBAL_INDEX;
-    if (index >= counters[0].lines[axis] || counters[0].cells > params.cell_capacity) return;
+    if (index >= counters[0].lines[axis] || !LDC_CELLS_FIT(counters[0])) return;
     const uint body = axis == 0u ? ldcBodyOfLineX(index) : (axis == 1u ? ldcBodyOfLineY(index) : ldcBodyOfLineZ(index));
     const uint line = index - bodies[body].first_line[axis];
     const uvec3 tops = bodies[body].grid.dims >> 4u;

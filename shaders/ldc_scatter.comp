@@ -15,6 +15,7 @@ BUFFER(writeonly, 8, uint, sample_ids)
 BUFFER(readonly, 9, LdcBody, bodies)
 BUFFER_ALIGNED(writeonly, 10, uvec4, patches)
 BUFFER_ALIGNED(readonly, 11, LdcCorners, corners)
+#include "ldc_corners.glsl"
 #include "ldc_projected.glsl"
 
 void main() {
@@ -30,9 +31,10 @@ void main() {
     const uint at = (voxel_table[params.first_node * 64u + voxel] & 0x7fffffffu) + slot;
     if (params.sampling == LDC_CONSERVATIVE) {
         vec3 a, b, c;
-        ldcCornersOf(corners[id >> 2u], a, b, c);
-        const vec3 normal = corners[id >> 2u].cz_normal.yzw;  // that by which the rasteriser chose the axis
-        patches[at] = ldcPackPatch(ldcProjectFrom(grid.inv_voxel, a, b, c, normal, id & 3u), position, id, last);
+        const LdcCorners packed = corners[id >> 2u];
+        ldcCornersOf(packed, a, b, c);
+        // The normal by which the rasteriser chose the axis.
+        patches[at] = ldcPackPatch(ldcProjectFrom(grid.inv_voxel, a, b, c, ldcNormalOf(packed), id & 3u), position, id, last);
         return;
     }
     samples[at] = ldcPackSample(ldcProjected(grid, id), position, id & 3u, params.sampling, last);

@@ -29,7 +29,7 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i == 0u) readback[0] = counters[0];  // all of them are final by now
-    if (i >= counters[0].cells || counters[0].cells > params.cell_capacity || node_masks[i] != uvec2(0)) return;
+    if (i >= counters[0].cells || !LDC_CELLS_FIT(counters[0]) || node_masks[i] != uvec2(0)) return;
     const uint body = ldcBodyOfCell(params.first_cell + i);
     first_top = ldcFirstCell(body);
     const ivec3 tops = ivec3(bodies[body].grid.dims >> 4u);

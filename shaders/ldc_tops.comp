@@ -14,7 +14,7 @@ void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
     if (lane == 0u) group_occupied = group_nodes = 0u;
     barrier();
-    const uint nodes = i < counters[0].cells && counters[0].cells <= params.cell_capacity ? ldcMaskCount(node_masks[i]) : 0u;
+    const uint nodes = i < counters[0].cells && LDC_CELLS_FIT(counters[0]) ? ldcMaskCount(node_masks[i]) : 0u;
     uint occupied = 0u, node = 0u;
     if (nodes != 0u) {
         occupied = atomicAdd(group_occupied, 1u);

@@ -39,14 +39,6 @@ struct LdcCorners {
     vec4 a_bx, byz_cxy, cz_normal;  ///< and the normal, not normalised (ldcNormal)
 };
 SHARED_SIZE(LdcCorners, 48);
-#ifndef __cplusplus
-void ldcCornersOf(LdcCorners packed, out vec3 a, out vec3 b, out vec3 c) {
-    a = packed.a_bx.xyz;
-    b = vec3(packed.a_bx.w, packed.byz_cxy.xy);
-    c = vec3(packed.byz_cxy.zw, packed.cz_normal.x);
-}
-LdcCorners ldcPackCorners(vec3 a, vec3 b, vec3 c, vec3 normal) { return LdcCorners(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, normal)); }
-#endif
 
 /// Parameters of all ldc_* passes. A build makes the cubes of a range of bodies; its tables begin behind those of the
 /// bodies that were built before.

@@ -89,6 +89,9 @@ vec3 peelrayInverse(vec3 d) {
                             abs(d.z) < 1e-12 ? (d.z < 0.0 ? -1e-12 : 1e-12) : d.z);
 }
 
+/// A cube's grid in 16 voxels.
+uvec3 peelrayTops(PeelrayInstance place) { return uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u; }
+
 vec3 peelrayTurn(PeelrayInstance place, vec3 v) { return vec3(dot(place.x, v), dot(place.y, v), dot(place.z, v)); }
 
 /// How far outside a cube a ray may start for its coordinates to be precise enough: voxels, and lengths of the longest side.
@@ -107,6 +110,18 @@ struct PeelrayLocal {
     vec3 tolerance;        ///< of `tolerance` hits along each axis, voxels
 };
 
+/// Direction and start of the ray in the cube's space, and how its parameter counts there; not yet moved. Returns its scale: d is
+/// `scale` times the direction.
+float peelrayIntoBody(PeelrayInstance place, PeelrayRay ray, inout PeelrayLocal r) {
+    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
+    const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
+    r.d = turned * scale;
+    r.s_per_t = place.inv_voxel / scale;
+    r.start = peelrayTurn(place, ray.origin - place.corner);
+    r.s_shift = 0.0;
+    return scale;
+}
+
 /// Where a ray is after so many lengths of its direction, from the cube's corner in the units of the body's space: rounded once.
 vec3 peelrayStartAt(PeelrayInstance place, PeelrayRay ray, float along) {
     return peelrayTurn(place, vec3(peelrayFusedSum(peelrayTwoSum(ray.origin.x, -place.corner.x), along, ray.direction.x),
@@ -116,12 +131,9 @@ vec3 peelrayStartAt(PeelrayInstance place, PeelrayRay ray, float along) {
 
 /// The ray as far as a hit at `t_best`; false: it does not meet the cube.
 bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, PeelrayOptions options, out PeelrayLocal r) {
-    const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
+    const uvec3 tops = peelrayTops(place);
     r.last = ivec3(tops) * 16 - 1;
-    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
-    const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
-    r.d = turned * scale;
-    r.s_per_t = place.inv_voxel / scale;
+    peelrayIntoBody(place, ray, r);
     r.inv = peelrayInverse(r.d);
     r.tolerance = vec3(0);
     if (options.hit == PEELRAY_TOLERANCE)
@@ -130,10 +142,8 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
     const vec3 size = vec3(tops) * 16.0;
 
     // A ray that starts far outside the box is moved to it first, rounding once, so that a far origin costs no precision.
-    r.start = peelrayTurn(place, ray.origin - place.corner);
     r.o = r.start * place.inv_voxel;
     vec2 inside = peelrayClip(r.o, r.inv, size);
-    r.s_shift = 0.0;
     const vec3 away = abs(r.o);
     const float near = min(PEELRAY_NEAR_SIZES * max(size.x, max(size.y, size.z)), PEELRAY_NEAR);
     if ((inside.x > 0.0 || inside.y < 0.0) && !(max(away.x, max(away.y, away.z)) <= near)) {
@@ -151,6 +161,12 @@ bool peelrayEnterCube(PeelrayInstance place, PeelrayRay ray, float t_best, Peelr
     r.s_begin = max(r.s_min, inside.x);
     r.s_end = min(r.s_best, inside.y);
     return r.s_begin <= r.s_end;
+}
+
+/// Stores how far the nearest hit in an instance is.
+void peelrayKeep(PeelrayLocal r, uint instance, inout PeelrayHit hit) {
+    hit.t = (r.s_best + r.s_shift) / r.s_per_t;
+    hit.instance = instance;
 }
 
 /// Does a hit at `s_hit` take the place of what the ray has hit so far? Of two at the same place that of the smaller number counts: lists

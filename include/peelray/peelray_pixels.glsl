@@ -221,10 +221,7 @@ void peelrayTracePixels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
         if (options.any_hit && found_one) break;
         first += uint(size.x * size.y);
     }
-    if (found_one) {
-        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
-        hit.instance = instance;
-    }
+    if (found_one) peelrayKeep(r, instance, hit);
 }
 
 /// Once for each of four rays k. Written out: spirv-opt unrolls loops without keeping what is declared precise.
@@ -265,7 +262,7 @@ void peelrayTraceFour(uint instances, PeelrayRay rays[4], uvec2 skips[4], Peelra
                              found[k] = false;)
         uint first = place.first_cell;
         for (uint axis = 0u; axis < 3u; axis++) {
-            const uvec3 dims = 16u * (uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u);
+            const uvec3 dims = 16u * peelrayTops(place);
             const ivec2 size = ivec3(peelrayToLdi(vec3(dims), axis)).xy;
             PeelrayWalk walks[4];
             PEELRAY_EACH_OF_FOUR(walks[k].done = true;
@@ -277,10 +274,7 @@ void peelrayTraceFour(uint instances, PeelrayRay rays[4], uvec2 skips[4], Peelra
             }
             first += uint(size.x * size.y);
         }
-        PEELRAY_EACH_OF_FOUR(if (found[k]) {
-            hits[k].t = (r[k].s_best + r[k].s_shift) / r[k].s_per_t;
-            hits[k].instance = instance;
-        })
+        PEELRAY_EACH_OF_FOUR(if (found[k]) peelrayKeep(r[k], instance, hits[k]);)
     }
     PEELRAY_EACH_OF_FOUR(hits[k].t = hits[k].triangle == PEELRAY_MISS ? infinity : hits[k].t * scales[k];)
 }

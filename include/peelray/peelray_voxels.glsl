@@ -158,24 +158,15 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
             cell.z = last.z + 1;
         if (any(equal(cell, beyond))) break;
     }
-    if (found_one) {
-        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
-        hit.instance = instance;
-    }
+    if (found_one) peelrayKeep(r, instance, hit);
 }
 
 /// The same in a body that has no cube (PEELRAY_BARE), triangle by triangle. The ray meets its box.
 void peelrayTraceBare(uint instance, PeelrayInstance place, PeelrayRay ray, uint skip, inout PeelrayHit hit) {
     PeelrayLocal r;
-    const vec3 turned = peelrayTurn(place, ray.direction), turned_abs = abs(turned);
-    const float scale = peelrayScale(max(turned_abs.x, max(turned_abs.y, turned_abs.z)));
-    r.d = turned * scale;
-    r.s_per_t = place.inv_voxel / scale;
-    r.start = peelrayTurn(place, ray.origin - place.corner);
-    r.s_shift = 0.0;
+    const float scale = peelrayIntoBody(place, ray, r);
     // The cube that it does not have is as good a measure of what is far.
-    const uvec3 tops = uvec3(place.tops, place.tops >> 10u, place.tops >> 20u) & 1023u;
-    const vec3 size = vec3(tops) * (16.0 * place.voxel), away = abs(r.start);
+    const vec3 size = vec3(peelrayTops(place)) * (16.0 * place.voxel), away = abs(r.start);
     if (!(max(away.x, max(away.y, away.z)) <= PEELRAY_NEAR_SIZES * max(size.x, max(size.y, size.z)))) {
         const float enters = peelrayClip(r.start, peelrayInverse(r.d), size).x * scale;
         const float along = min(max(ray.tmin, enters - 1e-6 * abs(enters)), hit.t);
@@ -189,10 +180,7 @@ void peelrayTraceBare(uint instance, PeelrayInstance place, PeelrayRay ray, uint
     bool found_one = false;
     for (uint id = first; id <= last; id++)
         if (id != skip && peelrayTestTriangle(place, ray, id, false, shear, r, hit)) found_one = true;
-    if (found_one) {
-        hit.t = (r.s_best + r.s_shift) / r.s_per_t;
-        hit.instance = instance;
-    }
+    if (found_one) peelrayKeep(r, instance, hit);
 }
 
 #endif

@@ -100,9 +100,7 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     const std::string note = tolerance_note(s.bodies, s.choice);
     if (!note.empty() && !noted_tolerance_) print_note(note);
     noted_tolerance_ |= !note.empty();
-    if (s.cubes.bodies)
-        made.summary = fmt::format(", {} cube{} of up to {} ({})", s.cubes.cubes(), s.cubes.cubes() == 1 ? "" : "s",
-                                   s.cubes.resolution, name_of(s.hit));
+    if (s.cubes.bodies) made.summary = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
         made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
                                    s.maps.shadows.maps);

@@ -41,6 +41,10 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
             {"box", box_stats(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
 }
 
+std::string count_of_cubes(const SceneCubes::Stats& cubes) {
+    return fmt::format("{} cube{} of up to {}", cubes.cubes(), cubes.cubes() == 1 ? "" : "s", cubes.resolution);
+}
+
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {
     if (choice.hit != HitTest::tolerance) return {};
     // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.

@@ -10,6 +10,9 @@
 
 namespace peelray {
 
+/// "2 cubes of up to 368": how many, and their voxels along the longest side.
+std::string count_of_cubes(const SceneCubes::Stats& cubes);
+
 /// Device, driver, API version and the build's commit.
 nlohmann::ordered_json device_stats(const Device& device);
 /// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:

@@ -142,11 +142,8 @@ void run_trace(const TraceArguments& a) {
     fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
     if (traced_scene.structures())
         fmt::print(", {} acceleration structures", traced_scene.structures()->stats().bodies);
-    else {
-        const SceneCubes::Stats cubes = traced_scene.cubes().stats();
-        fmt::print(" ({}), {} cube{} of up to {}", name_of(choice.hit), cubes.cubes(), cubes.cubes() == 1 ? "" : "s",
-                   cubes.resolution);
-    }
+    else
+        fmt::print(" ({}), {}", name_of(choice.hit), count_of_cubes(traced_scene.cubes().stats()));
     if (device.timestamp_period() > 0)
         fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", traced_scene.structures() ? "structures" : "cubes",
                    traced_scene.build_ms(), traced.trace_ms);

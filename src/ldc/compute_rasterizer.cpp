@@ -21,23 +21,22 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
     Device& device = state.device;
     const LdcParams& p = state.params;
     const bool masked = state.tests_alpha(triangles);
+    const bool corners = state.cubes.has_patches();
     const Binding geometry[] = {{"positions", triangles.positions},
                                 {"triangles", triangles.triangles},
                                 {"counters", state.counters},
                                 {"node_masks", state.node_masks},
                                 {"fragments", state.fragments},
                                 {"bodies", state.cubes.body_table},
-                                {"blocks", blocks_}};
+                                {"blocks", blocks_},
+                                {"corners", corners ? state.cubes.corners : state.cubes.body_table}};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
-    const bool corners = state.cubes.has_patches();
-    std::vector<Binding> of_raster = bindings;
-    of_raster.push_back({"corners", corners ? state.cubes.corners : state.cubes.body_table});
-    commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles), corners}), of_raster, p,
+    commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles), corners}), bindings, p,
                  groups_for(p.triangles, 64));
     if (p.block_capacity == 0) return;
     state.record_groups(commands);
-    commands.run_indirect(device.pass("ldc_raster_blocks", {masked}), bindings, p, state.groups,
-                          LDC_GROUPS_BLOCKS * 12);
+    const Pass& blocks = device.pass("ldc_raster_blocks", {masked});
+    commands.run_indirect(blocks, declared(blocks, bindings), p, state.groups, LDC_GROUPS_BLOCKS * 12);
 }
 
 /// Scenes without large triangles do without the passes for them.

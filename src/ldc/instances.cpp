@@ -39,9 +39,10 @@ Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : d
     table_ = Buffer(device, "instances", count * sizeof(GpuInstance));
     cubes_ = Buffer(device, "cubes of instances", count * sizeof(PeelrayInstance));
     boxes_ = Buffer(device, "boxes of instances", total * sizeof(PeelrayBox));
-    if (count <= 8)
+    if (count <= 8) {
         for (const InstanceInfo& info : infos) few_.push_back(info.body);
-    if (count <= 8) return;
+        return;
+    }
     unsorted_boxes_ = Buffer(device, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
     if (count <= TREE_SMALL) return;
     const uint64_t buckets = 1ull << (3 * bits_for(count));

@@ -208,6 +208,9 @@ class Assembler {
     }
 
     void append(const Place& place, const Deformed& vertices, uint32_t first_id, uint32_t object) {
+        append(place, vertices, part_of(primitive_of(place), vertices), first_id, object);
+    }
+    void append(const Place& place, const Deformed& vertices, const Part& part, uint32_t first_id, uint32_t object) {
         const Primitive& primitive = primitive_of(place);
         Assembly::Body& body = out_.bodies.back();
         const auto first = uint32_t(out_.positions.size()), count = uint32_t(vertices.positions.size());
@@ -221,14 +224,12 @@ class Assembler {
             out_.colors.insert(out_.colors.end(), primitive.colors.begin(), primitive.colors.end());
             out_.colors.resize(out_.positions.size(), glm::vec4(1));
         }
-        body.inverse_edges += inverse_edges(primitive.triangles.size(), part_of(primitive, vertices).area);
+        body.lower = glm::min(body.lower, part.lower);
+        body.upper = glm::max(body.upper, part.upper);
+        body.inverse_edges += double(part.triangles) / mean_edge(part.triangles, part.area);
         for (size_t i = 0; i < primitive.triangles.size(); i++) {
             glm::uvec3 t = primitive.triangles[i];
             if (vertices.mirrors) std::swap(t.y, t.z);
-            for (int k = 0; k < 3; k++) {
-                body.lower = glm::min(body.lower, vertices.positions[t[k]]);
-                body.upper = glm::max(body.upper, vertices.positions[t[k]]);
-            }
             out_.triangles.push_back(t + first);
             out_.ids.push_back(first_id + uint32_t(i));
         }
@@ -266,7 +267,7 @@ class Assembler {
         for (const std::vector<uint32_t>& group : group_parts(parts)) {
             begin_body();
             for (uint32_t i : group)
-                append(places[i], vertices[i], first_id(places[i]), objects_[size_t(places[i].node)]);
+                append(places[i], vertices[i], parts[i], first_id(places[i]), objects_[size_t(places[i].node)]);
             out_.instances.push_back({uint32_t(out_.bodies.size() - 1), anchor, glm::mat4(1), 0, 0});
         }
     }
@@ -322,8 +323,8 @@ class Assembler {
 
 }  // namespace
 
-double inverse_edges(uint64_t triangles, double area) {
-    return triangles == 0 ? 0 : double(triangles) / std::sqrt((area > 1e-60 ? area : 1e-60) / double(triangles));
+double mean_edge(uint64_t triangles, double area) {
+    return std::sqrt((area > 1e-60 ? area : 1e-60) / double(std::max<uint64_t>(triangles, 1)));
 }
 
 uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt) {

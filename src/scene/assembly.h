@@ -12,7 +12,7 @@ struct Assembly {
     struct Body {
         uint32_t first_triangle = 0, triangles = 0, first_vertex = 0, vertices = 0;
         glm::vec3 lower{0}, upper{0};  ///< in its own space; of one that deforms: in the scene's present moment
-        double inverse_edges = 0;      ///< sum of 1 / edge over its triangles (inverse_edges), for serving_resolution
+        double inverse_edges = 0;      ///< sum of 1 / mean_edge() over its triangles, for serving_resolution
     };
 
     /// A body and where it stands: in the space of a node, in which it is moved by `offset`.
@@ -46,9 +46,8 @@ struct Assembly {
     uint64_t shown = 0;               ///< triangles with all instances
 };
 
-/// Sum of 1 / edge over `triangles` triangles of `area` in all, taken as if they were equal: edge is the root of a
-/// triangle's area.
-double inverse_edges(uint64_t triangles, double area);
+/// Edge of `triangles` triangles of `area` in all, taken as if they were equal: the root of a triangle's area. Above 0.
+double mean_edge(uint64_t triangles, double area);
 
 /// Voxels along the longest side of a cube that serves a body well: 16 to 1024, a multiple of 16. By the number of its
 /// triangles, where they are spread over all of it; where they crowd in parts of it, as many as if all of it were

@@ -35,8 +35,8 @@ class Extent {
         lower_ = glm::min(lower_, part.lower);
         upper_ = glm::max(upper_, part.upper);
         triangles_ += part.triangles;
-        const double edge = std::sqrt(std::max(part.area, 1e-60) / double(std::max<uint64_t>(part.triangles, 1)));
-        inverse_edges_ += inverse_edges(part.triangles, part.area);
+        const double edge = mean_edge(part.triangles, part.area);
+        inverse_edges_ += double(part.triangles) / edge;
         weight_ += weight;
         by_edge_ += weight / edge;
         by_edge2_ += weight / (edge * edge);

@@ -58,4 +58,14 @@ inline double edge_distance(const std::array<glm::dvec3, 3>& t, const glm::dvec2
     return least;
 }
 
+/// The same of a cube of half-width `h` as it is seen along u and along v: the lesser of the two.
+inline double side_distance(const std::array<glm::dvec3, 3>& t, const glm::dvec3& centre, double h) {
+    std::array<glm::dvec3, 3> along_u, along_v;
+    for (size_t k = 0; k < 3; k++) {
+        along_u[k] = {t[k].y, t[k].z, t[k].x};
+        along_v[k] = {t[k].z, t[k].x, t[k].y};
+    }
+    return std::min(edge_distance(along_u, {centre.y, centre.z}, h), edge_distance(along_v, {centre.z, centre.x}, h));
+}
+
 }  // namespace peelray

@@ -125,7 +125,7 @@ class CpuRaster {
                 double from = w - extent, to = w + extent;
                 if (!centre_only) from = std::max(from, low.z), to = std::min(to, high.z);
                 for (double at = std::floor(from - 3e-3); at <= std::floor(to + 3e-3); at++)
-                    if (centre_only || is_near(t.corners, {x + 0.5, y + 0.5, at + 0.5}))
+                    if (centre_only || side_distance(t.corners, {x + 0.5, y + 0.5, at + 0.5}, 0.5) > -4e-3)
                         add(out.may, axis, triangle, x, y, at, at, dims.z);
                 if (!sure) continue;
                 if (centre_only) {
@@ -139,17 +139,6 @@ class CpuRaster {
                 add(out.must, axis, triangle, x, y, std::ceil(from) - 1, std::floor(to), dims.z);
             }
         }
-    }
-    /// Seen along u and along v.
-    static bool is_near(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& centre) {
-        std::array<glm::dvec3, 3> along_u, along_v;
-        for (size_t k = 0; k < 3; k++) {
-            const glm::dvec3& p = corners[k];
-            along_u[k] = {p.y, p.z, p.x};
-            along_v[k] = {p.z, p.x, p.y};
-        }
-        return edge_distance(along_u, {centre.y, centre.z}, 0.5) > -4e-3 &&
-               edge_distance(along_v, {centre.z, centre.x}, 0.5) > -4e-3;
     }
     void add(std::vector<uint64_t>& list, uint32_t axis, uint32_t triangle, int x, int y, double from, double to,
              double depth) const {
