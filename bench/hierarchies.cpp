@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "bench/embree_contender.h"
 #include "ldc/ray_sets.h"
+#include "loaders/load.h"
 #include "render/ray_scene.h"
 
 namespace peelray {

@@ -1,14 +1,17 @@
 # Compiles every shader of a folder to SPIR-V, validates it and embeds it: the program carries its shaders.
-# A shader's name is its file name: ldc_raster.comp -> "ldc_raster", visibility.vert -> "visibility.vert".
+# A shader's name is its file name without its folder: ldc/ldc_raster.comp -> "ldc_raster", view/visibility.vert -> "visibility.vert".
 find_program(GLSLC glslc REQUIRED)
 find_program(SPIRV_OPT spirv-opt REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
 # peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .tesc, .tese, .geom, .frag, .rgen, .rmiss,
-# .rchit and .rahit of DIR.
+# .rchit and .rahit of DIR and the folders in it.
 function(peelray_embed_shaders target dir)
-  file(GLOB sources CONFIGURE_DEPENDS ${dir}/*.comp ${dir}/*.vert ${dir}/*.tesc ${dir}/*.tese ${dir}/*.geom
-       ${dir}/*.frag ${dir}/*.rgen ${dir}/*.rmiss ${dir}/*.rchit ${dir}/*.rahit)
+  set(patterns)
+  foreach(kind comp vert tesc tese geom frag rgen rmiss rchit rahit)
+    list(APPEND patterns ${dir}/*.${kind})
+  endforeach()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${patterns})
   set(objects)
   foreach(source ${sources})
     get_filename_component(file ${source} NAME)

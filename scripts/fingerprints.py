@@ -155,15 +155,14 @@ def compare(before_path, after_path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program")
-    parser.add_argument("out")
-    parser.add_argument("after", nargs="?")
+    parser.add_argument("program", help="with --compare: the file of the build before")
+    parser.add_argument("out", help="with --compare: the file of the build after")
     parser.add_argument("--compare", action="store_true")
     parser.add_argument("--only", default="", help="cases whose name holds this text")
     parser.add_argument("--jobs", type=int, default=2)
     a = parser.parse_args()
     if a.compare:
-        return compare(a.program if a.after is None else a.program, a.out)
+        return compare(a.program, a.out)
     with tempfile.TemporaryDirectory() as folder:
         rays = Path(folder) / "rays.npy"
         write_rays(rays)

@@ -29,14 +29,15 @@ struct PeelrayInstance {
     vec3 z;
     uint tops;  ///< the grid's dims in 16 voxels: 10 bits each; PEELRAY_BARE
     vec3 corner;
-    uint first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel
-                      ///< order); of a bare body its first triangle, and in the upper two bits how many it has, less one
-    vec3 origin;      ///< as in CubeGrid
-    uint moved;       ///< 0: M is the identity and corner the grid's origin
+    uint
+        first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel
+                     ///< order); of a bare body its first triangle, and in the upper two bits how many it has, less one
+    vec3 origin;     ///< as in CubeGrid
+    uint moved;      ///< 0: M is the identity and corner the grid's origin
 };
 
-/// Of PeelrayInstance::tops: the body has so few triangles (PEELRAY_BARE_TRIANGLES at most) that a ray tests them all instead of
-/// walking through a cube, and there is none.
+/// Of PeelrayInstance::tops: the body has so few triangles (PEELRAY_BARE_TRIANGLES at most) that a ray tests them all
+/// instead of walking through a cube, and there is none.
 #define PEELRAY_BARE 0x80000000u
 #define PEELRAY_BARE_TRIANGLES 4u
 

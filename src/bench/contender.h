@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "params.h"
+#include "common/params.h"
 
 namespace peelray {
 

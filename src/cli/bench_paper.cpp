@@ -11,6 +11,7 @@
 #include "cli/stats.h"
 #include "cli/values.h"
 #include "image/image.h"
+#include "motion/animation.h"
 
 namespace peelray {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "builtin/builtin.h"
 #include "cli/paper_table.h"
 
 namespace peelray {

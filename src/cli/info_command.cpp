@@ -2,9 +2,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/program.h"
 #include "gpu/device.h"
-#include "scene/files.h"
+#include "loaders/files.h"
+#include "loaders/load.h"
 #include "scene/scene.h"
 
 namespace peelray {

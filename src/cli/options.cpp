@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "builtin/builtin.h"
 #include "cli/values.h"
 #include "scene/scene.h"
 

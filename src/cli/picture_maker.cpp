@@ -9,6 +9,7 @@
 #include "cli/stats.h"
 #ifdef PEELRAY_WITH_REFERENCE
 #include "cli/reference_picture.h"
+#include "motion/animation.h"
 #endif
 
 namespace peelray {

@@ -7,6 +7,9 @@
 #include "base/error.h"
 #include "cli/values.h"
 #include "image/image.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
+#include "motion/bounds.h"
 
 namespace peelray {
 namespace {

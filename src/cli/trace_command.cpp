@@ -7,6 +7,7 @@
 #include "cli/stats.h"
 #include "image/image.h"
 #include "image/npy.h"
+#include "loaders/load.h"
 #include "render/ray_scene.h"
 
 namespace peelray {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "ldc_grid.h"
+#include "ldc/ldc_grid.h"
 
 namespace peelray {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "params.h"
+#include "common/params.h"
 
 namespace peelray {
 namespace {

@@ -1,8 +1,8 @@
 // Materials, textures and what of vertices they read, uploaded.
 #pragma once
 
+#include "assembly/assembly.h"
 #include "ldc/base_color.h"
-#include "scene/assembly.h"
 
 namespace peelray {
 

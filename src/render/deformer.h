@@ -1,8 +1,8 @@
 // Skins and morph targets on the GPU: the vertices of everything that changes its shape, once per frame.
 #pragma once
 
+#include "assembly/assembly.h"
 #include "ldc/cubes.h"
-#include "scene/assembly.h"
 
 namespace peelray {
 
@@ -14,8 +14,8 @@ class Deformer {
 
     bool empty() const { return pieces_.empty(); }
 
-    /// Takes on the moment that `scene` is in: uploads joints and weights. Where a transform has come to turn a piece inside
-    /// out, or back, its triangles in `triangles` are turned over.
+    /// Takes on the moment that `scene` is in: uploads joints and weights. Where a transform has come to turn a piece
+    /// inside out, or back, its triangles in `triangles` are turned over.
     void pose(Commands& commands, const Scene& scene, const Buffer& triangles);
 
     /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies,

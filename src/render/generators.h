@@ -1,8 +1,8 @@
 // What is generated (Scene::generated), made on the GPU for every moment; nothing of it is ever read back.
 #pragma once
 
+#include "assembly/assembly.h"
 #include "ldc/instances.h"
-#include "scene/assembly.h"
 
 namespace peelray {
 

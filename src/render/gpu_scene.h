@@ -1,11 +1,11 @@
 // The scene on the device: bodies, where their instances stand, and what shading reads beside the triangles themselves.
 #pragma once
 
+#include "assembly/assembly.h"
+#include "common/params.h"
 #include "ldc/instances.h"
-#include "params.h"
 #include "render/deformer.h"
 #include "render/generators.h"
-#include "scene/assembly.h"
 #include "scene/environment.h"
 
 namespace peelray {

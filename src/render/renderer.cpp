@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "khr/tracer.h"
+#include "motion/bounds.h"
 #include "render/compute_view.h"
 #include "render/structure_bodies.h"
 #include "render/time_table.h"

@@ -4,9 +4,9 @@
 
 #include <memory>
 
+#include "assembly/assembly.h"
 #include "ldc/cube_builder.h"
 #include "ldc/tracer.h"
-#include "scene/assembly.h"
 
 namespace peelray {
 

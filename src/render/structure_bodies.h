@@ -1,8 +1,8 @@
 // A scene's bodies as the device's own ray tracing takes them.
 #pragma once
 
+#include "assembly/assembly.h"
 #include "khr/structures.h"
-#include "scene/assembly.h"
 
 namespace peelray {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "params.h"
-#include "scene/assembly.h"
+#include "assembly/assembly.h"
+#include "common/params.h"
 
 namespace peelray {
 

@@ -5,8 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "motion/swarm_motion.h"
 #include "scene/scene.h"
-#include "swarm_motion.h"
 
 namespace peelray {
 namespace {
@@ -126,8 +126,7 @@ void simulate(Scene& scene, Water& water, double time) {
             primitive.positions[size_t(z) * row + x].y = float(surface.at(x, z));
             primitive.normals[size_t(z) * row + x] = surface.normal(x, z);
         }
-    for (const Water::Float& f : water.floats)
-        scene.nodes[size_t(f.node)].local = float_transform(surface, f, time);
+    for (const Water::Float& f : water.floats) scene.nodes[size_t(f.node)].local = float_transform(surface, f, time);
 }
 
 }  // namespace
@@ -149,8 +148,7 @@ WaterMoment moment_of(const Water& water, double time) {
 }
 
 glm::vec3 drift_of(const Water::Float& f, double time) {
-    const double turns = time / double(f.period) + f.phase,
-                 angle = 2 * std::numbers::pi * (turns - std::floor(turns));
+    const double turns = time / double(f.period) + f.phase, angle = 2 * std::numbers::pi * (turns - std::floor(turns));
     return {f.around.x + f.drift * float(std::cos(angle)), f.around.y + f.drift * float(std::sin(angle)), float(angle)};
 }
 

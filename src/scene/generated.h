@@ -1,5 +1,6 @@
-// Geometry that is not animated by keys but computed for every moment: a water surface, thousands of bodies in flight. On the
-// GPU passes of its own make it (src/render/generators), and nobody reads it back; simulate() is their twin on the CPU.
+// Geometry that is not animated by keys but computed for every moment: a water surface, thousands of bodies in flight.
+// On the GPU passes of its own make it (src/render/generators), and nobody reads it back; simulate() is their twin on
+// the CPU.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +11,25 @@ namespace peelray {
 
 struct Scene;
 
-/// A square of water in still air: heights h over a grid, after the wave equation h'' = c² ∆h - k h' with walls that reflect,
-/// by explicit steps of equal length (semi-implicit Euler: velocities first). Drops fall into it.
+/// A square of water in still air: heights h over a grid, after the wave equation h'' = c² ∆h - k h' with walls that
+/// reflect, by explicit steps of equal length (semi-implicit Euler: velocities first). Drops fall into it.
 struct Water {
-    int node = -1;        ///< its mesh has one primitive: (cells + 1)² vertices, row by row along x
-    uint32_t cells = 0;   ///< along each side
-    float size = 0;       ///< of the square around the node's origin, metres
-    float speed = 0;      ///< of waves, c, metres a second
-    float damping = 0;    ///< k, per second
+    int node = -1;       ///< its mesh has one primitive: (cells + 1)² vertices, row by row along x
+    uint32_t cells = 0;  ///< along each side
+    float size = 0;      ///< of the square around the node's origin, metres
+    float speed = 0;     ///< of waves, c, metres a second
+    float damping = 0;   ///< k, per second
     uint32_t steps_per_second = 0;
     std::vector<float> start;  ///< heights at time 0, when all is at rest
 
     /// Something that swims: it stands on the surface's mean height and slope under it.
     struct Float {
         int node = -1;
-        glm::vec2 around{0};   ///< x, z of the circle that it drifts along
-        float drift = 0;       ///< radius of the circle
-        float period = 1;      ///< seconds for a round
-        float phase = 0;       ///< share of a round at time 0
-        float radius = 0;      ///< of what it displaces
+        glm::vec2 around{0};  ///< x, z of the circle that it drifts along
+        float drift = 0;      ///< radius of the circle
+        float period = 1;     ///< seconds for a round
+        float phase = 0;      ///< share of a round at time 0
+        float radius = 0;     ///< of what it displaces
     };
     std::vector<Float> floats;
 
@@ -79,8 +80,9 @@ struct Generated {
     bool empty() const { return waters.empty() && swarms.empty(); }
 };
 
-/// Puts what is generated into the moment scene.generated.time: vertices of meshes, places of nodes. animate() only sets the
-/// moment: who looks at geometry on the CPU calls this afterwards. The result depends on nothing but the moment.
+/// Puts what is generated into the moment scene.generated.time: vertices of meshes, places of nodes. animate() only
+/// sets the moment: who looks at geometry on the CPU calls this afterwards. The result depends on nothing but the
+/// moment.
 void simulate(Scene& scene);
 
 }  // namespace peelray

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "base/ray_costs.h"
-#include "scene/bounds.h"
+#include "scene/box.h"
+#include "scene/scene.h"
 
 namespace peelray {
 

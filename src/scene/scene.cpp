@@ -1,49 +1,19 @@
 #include "scene/scene.h"
 
-#include <algorithm>
-#include <new>
-
-#include "base/error.h"
-#include "base/text.h"
-#include "scene/assimp_loader.h"
-#include "scene/files.h"
-#include "scene/gltf.h"
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace peelray {
 
-namespace {
-
-Scene load_file(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
-    if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
-    if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off")
-        return load_assimp(path, extension);
-    fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
-         printable(path.string(), 1000), printable(extension, 20));
+glm::mat4 Placement::matrix() const {
+    return glm::scale(glm::translate(glm::mat4(1), translation) * glm::mat4_cast(rotation), scale);
 }
 
-bool has_triangles(const Scene& scene) {
-    return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
-        if (node.mesh < 0) return false;
-        const std::vector<Primitive>& primitives = scene.meshes[static_cast<size_t>(node.mesh)].primitives;
-        return std::any_of(primitives.begin(), primitives.end(),
-                           [](const Primitive& p) { return !p.triangles.empty(); });
-    });
-}
-
-}  // namespace
-
-Scene load_scene(const std::string& name) {
-    constexpr std::string_view prefix = "builtin:";
-    if (name.starts_with(prefix)) return make_builtin(std::string_view(name).substr(prefix.size()));
-    const std::filesystem::path path(name);
-    try {
-        Scene scene = load_file(path);
-        if (!has_triangles(scene)) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
-        return scene;
-    } catch (const std::bad_alloc&) {
-        fail("{}: out of memory while reading the scene; use a smaller one", printable(name, 1000));
-    }
+std::vector<glm::mat4> world_matrices(const Scene& scene) {
+    std::vector<glm::mat4> worlds;
+    worlds.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes)
+        worlds.push_back(node.parent < 0 ? node.local : worlds[size_t(node.parent)] * node.local);
+    return worlds;
 }
 
 }  // namespace peelray

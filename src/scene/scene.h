@@ -166,7 +166,7 @@ struct Scene {
     std::vector<Light> lights;    ///< in world space
     std::vector<Skin> skins;
     std::vector<Animation> animations;
-    Generated generated;  ///< what is computed for every moment, if anything is
+    Generated generated;                              ///< what is computed for every moment, if anything is
     std::vector<std::string> extensions_used;         ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
     std::vector<std::string>
@@ -193,39 +193,6 @@ struct Geometry {
     glm::vec3 lower{0}, upper{0};     ///< bounds of all referenced positions; lower > upper: no triangle
     uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
 };
-
-/// Reads a scene: "builtin:NAME" or a file (.gltf, .glb; .obj, .ply, .stl, .off through Assimp).
-/// Throws Error (one line: what, where, what to do) for a file that is missing, empty, truncated, without triangles,
-/// with indices or accessors out of range, with NaN or infinite vertices, or that requires an unknown extension. A glTF
-/// URI never leads outside the file's folder.
-Scene load_scene(const std::string& name);
-
-/// The built-in scenes' names with a line of description each ("blob:N" stands for any N).
-struct BuiltinScene {
-    std::string_view name, description;
-};
-std::vector<BuiltinScene> builtin_scenes();
-
-/// Makes a built-in scene; `name` without "builtin:". Throws Error for an unknown name (listing the known ones) or an
-/// impossible N.
-Scene make_builtin(std::string_view name);
-
-/// The animations that `which` stands for: a name, an index or "all". Throws Error for an unknown animation, listing
-/// those there are, and for a scene without any.
-std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
-
-/// Makes the morph targets that were left for later. animate() begins with it; call it before looking at
-/// Primitive::targets of a scene that was not animated yet.
-void complete_targets(Scene& scene);
-
-/// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
-/// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
-/// `which`: see find_animations(); of two that move the same, the later one wins. The result depends on nothing that
-/// was done to the scene before. Throws Error like find_animations().
-void animate(Scene& scene, const std::string& which, double time);
-
-/// Undoes animate().
-void stand_at_rest(Scene& scene);
 
 /// World matrices of all nodes.
 std::vector<glm::mat4> world_matrices(const Scene& scene);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/embree_contender.h"
+#include "loaders/load.h"
+#include "motion/bounds.h"
 #include "reference/ray_sets.h"
 
 namespace peelray {

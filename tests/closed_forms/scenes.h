@@ -10,9 +10,9 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include "builtin/shapes.h"
 #include "scene/environment.h"
 #include "scene/picture.h"
-#include "scene/shapes.h"
 
 namespace peelray {
 

@@ -3,9 +3,9 @@
 
 #include <random>
 
+#include "common/params.h"
 #include "gpu/device_fixture.h"
 #include "gpu/shader_table.h"
-#include "params.h"
 
 namespace peelray {
 

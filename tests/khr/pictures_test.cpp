@@ -1,6 +1,8 @@
 // Pictures by the device's own ray tracing: those of the cubes.
 #include "image/metrics.h"
 #include "khr_fixture.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "render/renderer.h"
 #include "scene/environment.h"
 

@@ -1,9 +1,10 @@
 // Hits of the device's own ray tracing on whole scenes: those of the cubes and of the oracle.
 #include "khr_fixture.h"
+#include "loaders/load.h"
+#include "motion/motion.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
 #include "render/ray_scene.h"
-#include "scene/motion.h"
 
 namespace peelray {
 namespace {

@@ -2,11 +2,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "../gpu/device_fixture.h"
+#include "builtin/shapes.h"
 #include "ldc/cube_builder.h"
 #include "ldc/tracer.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
-#include "scene/shapes.h"
 
 namespace peelray {
 namespace {

@@ -4,12 +4,13 @@
 
 #include "../gpu/device_fixture.h"
 #include "decoded_cube.h"
+#include "loaders/load.h"
+#include "motion/motion.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
 #include "render/base_colors.h"
 #include "render/ray_scene.h"
 #include "scene/alpha_test.h"
-#include "scene/motion.h"
 #include "single_cube.h"
 
 namespace peelray {

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "loaders/load.h"
 #include "scene/scene.h"
 
 namespace peelray::test {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "params.h"
+#include "common/params.h"
 #include "reference/oracle.h"
 #include "scene/scene.h"
 

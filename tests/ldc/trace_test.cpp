@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "../gpu/device_fixture.h"
+#include "loaders/load.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
 #include "traced_body.h"

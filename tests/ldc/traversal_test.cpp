@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../gpu/device_fixture.h"
+#include "loaders/load.h"
 #include "ray_sets.h"
 #include "traced_body.h"
 

@@ -10,6 +10,7 @@
 
 #include "../image/temp_folder.h"
 #include "image/image.h"
+#include "loaders/load.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {

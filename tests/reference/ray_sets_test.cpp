@@ -1,11 +1,12 @@
 // The rays of a frame as a benchmark sends them: which there are, in which order, and where they go.
 #include "reference/ray_sets.h"
+#include "motion/bounds.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "scene/shapes.h"
+#include "builtin/shapes.h"
 
 namespace peelray {
 namespace {

@@ -1,6 +1,8 @@
 // The camera, auxiliary pictures, bands, antialiasing.
 #include <pictures.h>
 
+#include "motion/bounds.h"
+
 namespace peelray {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "moving.h"
 
 namespace peelray {
@@ -61,11 +63,19 @@ class DeformTest : public DeviceTest {
             skin.inverse_bind.push_back(glm::translate(glm::mat4(1), point(0.5f)));
             const glm::quat a = glm::normalize(glm::quat(1, unit(), unit(), unit())),
                             b = glm::normalize(glm::quat(1, unit() - 1, unit(), unit()));
-            animation.channels.push_back({int(i) + 1, Path::rotation, AnimationChannel::Interpolation::linear, 4, {0, 2},
+            animation.channels.push_back({int(i) + 1,
+                                          Path::rotation,
+                                          AnimationChannel::Interpolation::linear,
+                                          4,
+                                          {0, 2},
                                           {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w}});
         }
         if (with_targets)
-            animation.channels.push_back({0, Path::weights, AnimationChannel::Interpolation::linear, 3, {0, 1, 2},
+            animation.channels.push_back({0,
+                                          Path::weights,
+                                          AnimationChannel::Interpolation::linear,
+                                          3,
+                                          {0, 1, 2},
                                           {0, 0, 0, 1, -0.5f, 0, 0, 2, 1}});
         animation.channels.push_back(
             {0, Path::translation, AnimationChannel::Interpolation::linear, 3, {0, 2}, {3, 1, 0, 5, 1, 2}});
@@ -156,7 +166,9 @@ TEST_F(DeformTest, ThingsMoveAsTheirNodes) {
     const float s = std::sqrt(0.5f);
     for (const int node : {0, 2})
         scene.animations.push_back(
-            {"", 1, {{node, Path::rotation, AnimationChannel::Interpolation::linear, 4, {0, 1}, {0, 0, 0, 1, s, 0, 0, s}}}});
+            {"",
+             1,
+             {{node, Path::rotation, AnimationChannel::Interpolation::linear, 4, {0, 1}, {0, 0, 0, 1, s, 0, 0, s}}}});
     animate(scene, "all", 0);
     MovedScene moved(device(), scene, "all");
     EXPECT_TRUE(moved.assembly.pieces.empty()) << "nothing has to be rebuilt";

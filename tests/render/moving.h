@@ -3,6 +3,7 @@
 
 #include <pictures.h>
 
+#include "motion/animation.h"
 #include "render/gpu_scene.h"
 #include "render/scene_cubes.h"
 

@@ -3,8 +3,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "loaders/load.h"
+#include "motion/animation.h"
+#include "motion/bounds.h"
 #include "moving.h"
-#include "scene/bounds.h"
 
 namespace peelray {
 namespace {

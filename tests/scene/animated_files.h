@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/animation.h"
 #include "scene_files.h"
 
 namespace peelray::testing {

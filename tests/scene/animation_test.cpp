@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "scene/scene.h"
 
 namespace peelray {

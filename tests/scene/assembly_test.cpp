@@ -1,6 +1,6 @@
 // Scenes taken apart: put together again they are what flatten() gives, and only what changes its shape has to be
 // rebuilt.
-#include "scene/assembly.h"
+#include "assembly/assembly.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,11 @@
 #include <map>
 #include <random>
 
+#include "assembly/grouping.h"
 #include "base/error.h"
-#include "scene/grouping.h"
-#include "scene/shapes.h"
+#include "builtin/shapes.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
 
 namespace peelray {
 namespace {

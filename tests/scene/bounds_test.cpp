@@ -1,5 +1,5 @@
 // The box that does not depend on the moment, and the camera that goes round.
-#include "scene/bounds.h"
+#include "motion/bounds.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,9 @@
 #include <map>
 #include <tuple>
 
+#include "builtin/builtin.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "scene/alpha_test.h"
 #include "scene_files.h"
 

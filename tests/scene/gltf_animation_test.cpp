@@ -2,6 +2,7 @@
 #include <set>
 
 #include "animated_files.h"
+#include "motion/animation.h"
 
 namespace peelray::testing {
 namespace {

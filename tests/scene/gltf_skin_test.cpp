@@ -1,5 +1,6 @@
 // Skins of glTF files: what bad ones say, and what odd ones mean.
 #include "animated_files.h"
+#include "motion/animation.h"
 
 namespace peelray::testing {
 namespace {

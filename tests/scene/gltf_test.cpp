@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "scene/alpha_test.h"
 #include "scene_files.h"
 

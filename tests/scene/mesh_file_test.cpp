@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loaders/load.h"
 #include "scene_files.h"
 
 namespace peelray::testing {

@@ -1,5 +1,5 @@
 // Meshes of implicit surfaces: closed, even, on the surface, cut along lines; joint weights that flow over them.
-#include "scene/polygonise.h"
+#include "builtin/polygonise.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "scene/parted_mesh.h"
-#include "scene/shapes.h"
-#include "scene/skin_weights.h"
-#include "scene/soft_body.h"
+#include "builtin/parted_mesh.h"
+#include "builtin/shapes.h"
+#include "builtin/skin_weights.h"
+#include "builtin/soft_body.h"
 
 namespace peelray {
 namespace {

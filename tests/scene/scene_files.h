@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "loaders/load.h"
 #include "scene/scene.h"
 
 namespace peelray::testing {

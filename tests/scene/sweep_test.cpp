@@ -7,6 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "scene_files.h"
 
 namespace peelray::testing {

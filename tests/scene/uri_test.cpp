@@ -1,6 +1,7 @@
 // A scene file never reads outside of its own folder, and what was read is known.
 #include <set>
 
+#include "loaders/load.h"
 #include "scene_files.h"
 
 namespace peelray::testing {

@@ -5,7 +5,9 @@
 #include <map>
 #include <tuple>
 
-#include "scene/walker.h"
+#include "builtin/walker.h"
+#include "loaders/load.h"
+#include "motion/animation.h"
 #include "scene_files.h"
 
 namespace peelray::testing {

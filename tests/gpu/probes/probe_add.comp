@@ -1,6 +1,6 @@
 // data[i] += step, in place.
 #version 460
-#include "common.glsl"
+#include "common/common.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint factor = 1;
 struct Add { uint count, step; };

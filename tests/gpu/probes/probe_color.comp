@@ -1,7 +1,7 @@
 // Colour: both sRGB curves and the tone curves.
 #version 460
-#include "common.glsl"
-#include "shading.glsl"
+#include "common/common.glsl"
+#include "path/shading.glsl"
 #include "probe.glsl"
 struct Output { vec3 linear, srgb, aces, neutral; };
 PROBE(vec3, Output)

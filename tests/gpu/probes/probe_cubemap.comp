@@ -1,10 +1,10 @@
 // A cube map whose texels hold their own directions.
 #version 460
-#include "common.glsl"
-#include "params.h"
+#include "common/common.glsl"
+#include "common/params.h"
 vec4 ownDirection(uint index);
 #define CUBE_TEXEL(index) ownDirection(index)
-#include "cubemap.glsl"
+#include "cubemap/cubemap.glsl"
 #include "probe.glsl"
 struct Input { vec3 direction; uint size; };
 struct Output { vec3 looked_up; uint face; vec3 from_face; };

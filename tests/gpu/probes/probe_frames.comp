@@ -1,7 +1,7 @@
 // Tangents, bent normals and lifted directions.
 #version 460
-#include "common.glsl"
-#include "shading.glsl"
+#include "common/common.glsl"
+#include "path/shading.glsl"
 #include "probe.glsl"
 struct Input { vec3 normal, geometric, direction; };
 struct Output { vec3 t, b, visible, above; };

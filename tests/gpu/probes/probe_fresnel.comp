@@ -1,7 +1,7 @@
 // Fresnel reflectance and refraction.
 #version 460
-#include "common.glsl"
-#include "shading.glsl"
+#include "common/common.glsl"
+#include "path/shading.glsl"
 #include "probe.glsl"
 struct Input { vec3 incoming, normal; float eta; };
 struct Output { float reflectance, schlick; uint refracts; vec3 refracted; };

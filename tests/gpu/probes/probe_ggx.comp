@@ -1,7 +1,7 @@
 // GGX: a sampled normal, density and masking at a cosine, split-sum factors.
 #version 460
-#include "common.glsl"
-#include "shading.glsl"
+#include "common/common.glsl"
+#include "path/shading.glsl"
 #include "probe.glsl"
 struct Input { vec3 view; float alpha; vec2 random; };
 struct Output { vec3 half_vector; float density, masking; vec3 environment; };

@@ -1,6 +1,6 @@
 // peelrayIntersect, peelrayIntersectPrecise.
 #version 460
-#include "common.glsl"
+#include "common/common.glsl"
 #include "peelray/intersect.glsl"
 #include "probe.glsl"
 struct Input { vec3 origin, direction, a, b, c; };

@@ -1,6 +1,6 @@
 // Permutations, keys and masks.
 #version 460
-#include "ldc_common.glsl"
+#include "ldc/ldc_common.glsl"
 #include "probe.glsl"
 struct Input { uvec3 voxel, dims; uint axis; uvec2 mask; uint bit; };
 struct Output { uvec3 to, back; uint top, node, inner; uvec3 top_cell, node_cell, inner_cell; uint set, count, rank, box; };

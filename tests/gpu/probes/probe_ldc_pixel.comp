@@ -1,6 +1,6 @@
 // A projected triangle at one pixel: coverage, depth range, packed sample.
 #version 460
-#include "ldc_common.glsl"
+#include "ldc/ldc_common.glsl"
 #include "probe.glsl"
 struct Input { vec3 a, b, c; vec2 slope; ivec2 pixel; uint voxel_w, planar; };
 struct Output { vec3 edges; uint covers; ivec2 depth; uvec4 packed; uint touches; };

@@ -1,6 +1,6 @@
 // A triangle in an LDI: normal, axis, capture, corners, slopes, bounds.
 #version 460
-#include "ldc_common.glsl"
+#include "ldc/ldc_common.glsl"
 #include "probe.glsl"
 struct Input { CubeGrid grid; vec3 a, b, c; uint axis, planar; };
 struct Output { vec3 normal; uint axis, captured, inside; vec3 a, b, c; vec2 slope; ivec2 lo, hi; };

@@ -1,7 +1,7 @@
 // randomPair and its hash.
 #version 460
-#include "common.glsl"
-#include "shading.glsl"
+#include "common/common.glsl"
+#include "path/shading.glsl"
 #include "probe.glsl"
 struct Input { uvec2 pixel; uint index, dimension; };
 struct Output { uvec3 hash; vec2 pair; };

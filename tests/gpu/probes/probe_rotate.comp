@@ -1,6 +1,6 @@
 // to[i] = from[i + shift] + add, around the end: every thread reads what another wrote in the pass before.
 #version 460
-#include "common.glsl"
+#include "common/common.glsl"
 layout(local_size_x = 64) in;
 struct Rotate { uint count, shift, add; };
 PARAMS(Rotate)

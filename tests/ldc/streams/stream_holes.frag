@@ -1,6 +1,6 @@
 // The wave has a round hole, which the alpha test cuts.
 #version 460
-#include "ldc_stream.glsl"
+#include "ldc/ldc_stream.glsl"
 
 void main() {
     if (routed_data0.z == 0.0 && distance(routed_data0.xy, vec2(0.3, -0.2)) < 0.4) discard;

@@ -1,8 +1,8 @@
 // A ribbon per instance, displaced in the vertex stage: sixteen pieces of two triangles each; places come from a buffer.
 #version 460
-#include "common.glsl"
+#include "common/common.glsl"
 BUFFER(readonly, 8, vec2, places)
-#include "ldc_stream_vertex.glsl"
+#include "ldc/ldc_stream_vertex.glsl"
 #include "stream_surface.glsl"
 
 void main() {

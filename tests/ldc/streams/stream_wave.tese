@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(quads, equal_spacing, ccw) in;
-#include "ldc_stream_vertex.glsl"
+#include "ldc/ldc_stream_vertex.glsl"
 #include "stream_surface.glsl"
 
 void main() {

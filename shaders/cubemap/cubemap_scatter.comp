@@ -1,0 +1,70 @@
+// The baseline's scatter: what a hit reflects and lets through is looked up, by direction alone, in the cube map of the hit's
+// object. No ray is traced.
+#version 460
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+PARAMS(LevelParams)
+#define SCENE_FIRST_BINDING 0
+#define SCENE_WITH_TRIANGLES
+#include "path/scene_buffers.glsl"
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, RayState, states)
+BUFFER(readonly, 14, Hit, hits)
+BUFFER(writeonly, 15, PathNode, nodes)
+BUFFER(readonly, 16, uint, triangle_objects)
+BUFFER(readonly, 17, GpuObject, objects)
+BUFFER(readonly, 18, uvec2, probes)
+#define CUBE_TEXEL(index) unpackTexel(probes[index])
+#include "cubemap/cubemap.glsl"
+#include "path/frame.glsl"
+#include "path/branches.glsl"
+
+GpuObject object;  // of this thread's hit
+
+/// A cube map holds the whole lobe, blurred: one lookup along the mirror direction.
+vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) { return s.normal; }
+float tracedPart(GpuMaterial m) { return 1.0; }
+void decide(inout Branch branch, vec3 path_weight, uint effect) {
+    branch.traced = (frame[0].effects & effect) != 0u && object.probe != NO_PROBE;
+}
+
+/// Light from a direction: the probe's, and where it holds nothing the environment's.
+vec3 seen(Branch branch, float roughness) {
+    if (!branch.traced) return environmentRadiance(branch.direction, branch.blur);
+    const bool mirror = roughness < MIRROR_ROUGHNESS;
+    const vec4 near = cubeRoughLookup(object.probe, object.face, object.levels, branch.direction, mirror ? 0.0 : roughness);
+    vec3 far;
+    if (mirror) {
+        far = skyRadiance(branch.direction, (branch.medium & RAY_SEES_SUN) != 0u);
+    } else {
+        far = environmentRadiance(branch.direction, roughness);
+        far *= min(1.0, frame[0].rough_limit / max(largest(far), 1e-30));
+    }
+    return near.rgb + (1.0 - near.a) * far;
+}
+
+void main() {
+    const uint i = GLOBAL_INDEX;
+    if (i >= params.capacity) return;
+    const Ray ray = rays[i];
+    const RayState state = states[i];
+    const Hit hit = hits[i];
+    vec3 radiance;
+    if (hit.triangle == NO_TRIANGLE) {
+        radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+    } else {
+        object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
+        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
+        const GpuMaterial m = materials[s.material];
+        Branch reflection, refraction;
+        radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
+        radiance += reflection.weight * seen(reflection, m.roughness);
+        // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material tells, and
+        // blurred less the less it bends (the glTF Sample Viewer's rule).
+        vec3 through = refraction.weight;
+        if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
+        radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
+    }
+    nodes[i] = PathNode(radiance, 0u, hit.triangle != NO_TRIANGLE ? NODE_SURFACE : 0u);
+}

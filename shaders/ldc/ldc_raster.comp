@@ -1,0 +1,141 @@
+// Rasterises small triangles, one thread each, into the LDIs that capture them; cuts the large ones into blocks of pixels.
+#version 460
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
+layout(constant_id = 1) const uint small_pixels = 48u;  // of a triangle's bounds that a thread goes through by itself
+layout(constant_id = 2) const bool keeps_corners = false;  // for `exact` hits
+PARAMS(LdcParams)
+BUFFER(readonly, 0, vec3, positions)
+BUFFER(readonly, 1, uvec3, triangles)
+BUFFER(, 2, LdcCounters, counters)
+BUFFER(, 3, uint, node_masks)
+BUFFER(writeonly, 4, LdcFragment, fragments)
+BUFFER(writeonly, 5, uvec2, blocks)
+BUFFER(readonly, 6, LdcBody, bodies)
+BUFFER_ALIGNED(writeonly, 16, LdcCorners, corners)
+#define BASE_COLOR_FIRST_BINDING 7
+#include "common/base_color_buffers.glsl"
+#include "common/bounds.glsl"
+#include "ldc/ldc_alpha.glsl"
+#include "ldc/ldc_corners.glsl"
+#include "ldc/ldc_emit.glsl"
+#include "ldc/ldc_projected.glsl"
+
+// Triangles that touch many blocks are cut by all threads of the workgroup.
+const uint LDC_MANY_BLOCKS = 16u;
+shared uint group_valid;  // has the workgroup anything to rasterise?
+shared uint many_count;
+shared uint many[3u * gl_WorkGroupSize.x];  // of a triangle in up to three LDIs
+
+/// Queues the blocks of pixels that a large triangle touches: of those in its bounds number `first`, `first` + `step`, ...
+void queueBlocks(LdcTriangle t, ivec2 lo, ivec2 hi, uint id, uint first, uint step) {
+    const uvec2 corner = uvec2(lo) / LDC_BLOCK, size = uvec2(hi) / LDC_BLOCK - corner + 1u;
+    const vec3 reach = ldcReach(t);
+    // Half a block and a pixel: never tighter than the test of the pixels themselves.
+    const float half_block = float(LDC_BLOCK) * 0.5;
+    for (uint i = first; i < size.x * size.y; i += step) {
+        const uvec2 block = corner + uvec2(i % size.x, i / size.x);
+        if (any(lessThan(ldcEdges(t, vec2(block) * float(LDC_BLOCK) + half_block), -(half_block + 0.51) * reach))) continue;
+        const uint slot = atomicAdd(counters[0].blocks, 1u);
+        if (slot < params.block_capacity) blocks[slot] = uvec2(id, block.x | block.y << 16u);
+    }
+}
+
+bool touchesMany(ivec2 lo, ivec2 hi) {
+    const uvec2 size = uvec2(hi) / LDC_BLOCK - uvec2(lo) / LDC_BLOCK + 1u;
+    return size.x * size.y > LDC_MANY_BLOCKS;
+}
+
+/// Is this a triangle, and no degenerate one, whose bounds hold no pixel's centre in any LDI? Most of a fine mesh are: they need not be
+/// projected.
+bool missesCentres(CubeGrid grid, vec3 a, vec3 b, vec3 c) {
+    const vec3 lower = (min(a, min(b, c)) - grid.origin) * grid.inv_voxel - (0.5 + 2.0 * LDC_SLACK);
+    const vec3 upper = (max(a, max(b, c)) - grid.origin) * grid.inv_voxel - (0.5 - 2.0 * LDC_SLACK);
+    const bvec3 holds = greaterThanEqual(floor(upper), ceil(lower));
+    if ((holds.x && holds.y) || (holds.y && holds.z) || (holds.z && holds.x)) return false;
+    const vec3 e = b - a, f = c - a, normal = abs(cross(e, f)), sizes = abs(e), other = abs(f);
+    return max(normal.x, max(normal.y, normal.z)) >
+           1e-5 * max(sizes.x, max(sizes.y, sizes.z)) * max(other.x, max(other.y, other.z));
+}
+
+/// Fragments of a small triangle: counted if `write` is false, else written from `position` on.
+uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace place, bool write, uint position) {
+    uint count = 0u;
+    for (int y = lo.y; y <= hi.y; y++)
+        for (int x = lo.x; x <= hi.x; x++)
+            if (ldcCovers(t, reach, vec2(x, y) + 0.5, params.sampling) && (!masked || ldcPresent(place.grid, id, vec2(x, y) + 0.5)))
+                count += ldcEmitPixel(t, ivec2(x, y), id, place, write, position + count);
+    return count;
+}
+
+void main() {
+    const uint id = params.first_triangle + GLOBAL_INDEX;
+    bool valid = GLOBAL_INDEX < params.triangles && LDC_CELLS_FIT(counters[0]);
+    const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body;
+    const LdcPlace place = ldcPlaceOf(body);
+    const CubeGrid grid = place.grid;
+    vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);
+    if (valid) {
+        const uvec3 indices = triangles[id];
+        a = positions[indices.x];
+        b = positions[indices.y];
+        c = positions[indices.z];
+        if (!(isBounded(a) && isBounded(b) && isBounded(c))) {
+            atomicAdd(counters[0].invalid, 1u);
+            valid = false;
+        } else if (params.sampling != LDC_CONSERVATIVE && missesCentres(grid, a, b, c)) {
+            valid = false;
+        } else {
+            normal = ldcNormal(a, b, c, grid.inv_voxel);
+            if (keeps_corners) corners[id] = ldcPackCorners(grid, a, b, c, normal);
+            if (normal == vec3(0)) {
+                atomicAdd(counters[0].degenerate, 1u);
+                valid = false;
+            }
+        }
+    }
+    if ((bodies[body].resolution & LDC_BARE) != 0u) valid = false;
+    if (gl_LocalInvocationIndex == 0u) many_count = group_valid = 0u;
+    barrier();
+    if (valid) group_valid = 1u;
+    barrier();
+    if (group_valid == 0u) return;
+    // Only the overlap band has triangles that several LDIs capture.
+    const uint first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(normal), last_axis = params.sampling == LDC_BAND ? 2u : first_axis;
+    uint count = 0u, covering = 0u;
+    for (uint axis = first_axis; axis <= last_axis; axis++) {
+        if (!valid || !ldcCaptured(normal, axis, params.sampling)) continue;
+        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
+        ivec2 lo, hi;
+        if (!ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi)) continue;
+        const ivec2 size = hi - lo + 1;
+        if (uint(size.x) * uint(size.y) > small_pixels) {
+            if (touchesMany(lo, hi))
+                many[atomicAdd(many_count, 1u)] = id << 2u | axis;
+            else
+                queueBlocks(t, lo, hi, id << 2u | axis, 0u, 1u);
+            continue;
+        }
+        const uint emitted = emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, false, 0u);
+        if (emitted != 0u) covering |= 1u << axis;
+        count += emitted;
+    }
+    uint position = ldcReserve(count);
+    for (uint axis = first_axis; axis <= last_axis; axis++) {
+        if ((covering >> axis & 1u) == 0u) continue;
+        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
+        ivec2 lo, hi;
+        ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi);
+        position += emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, true, position);
+    }
+    for (uint i = 0u; i < many_count; i++) {
+        const uint large = many[i];
+        const CubeGrid its_grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
+        const LdcTriangle its = ldcProjected(its_grid, large);
+        ivec2 lo, hi;
+        ldcBounds(its, uvec3(peelrayToLdi(vec3(its_grid.dims), large & 3u)).xy, lo, hi);
+        queueBlocks(its, lo, hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
+    }
+}

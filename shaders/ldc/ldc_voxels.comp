@@ -1,0 +1,39 @@
+// The 64 voxel entries of each node: where a list starts, or an empty voxel's box. Lists lie in the order in which the workgroups
+// happen to run.
+#version 460
+#include "ldc/ldc_common.glsl"
+layout(local_size_x = 256) in;
+PARAMS(LdcParams)
+BUFFER(, 0, LdcCounters, counters)
+BUFFER(readonly, 1, uint, voxel_counts)
+BUFFER(writeonly, 2, uint, voxel_table)
+
+shared uint masks[8];  // of four nodes
+shared uint group_samples, group_voxels, group_longest, first_sample;
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex, voxel = lane & 63u, node = GROUP_INDEX * 4u + (lane >> 6u);
+    const bool valid = node < min(counters[0].nodes, params.node_capacity);
+    if (lane < 8u) masks[lane] = 0u;
+    if (lane == 0u) group_samples = group_voxels = group_longest = 0u;
+    barrier();
+    const uint samples = valid ? voxel_counts[node * 64u + voxel] : 0u;
+    uint start = 0u;
+    if (samples != 0u) {
+        atomicOr(masks[lane >> 5u], 1u << (lane & 31u));
+        start = atomicAdd(group_samples, samples);
+        atomicAdd(group_voxels, 1u);
+        atomicMax(group_longest, samples);
+    }
+    barrier();
+    if (lane == 0u && group_samples != 0u) {
+        first_sample = atomicAdd(counters[0].listed, group_samples);
+        atomicAdd(counters[0].voxels, group_voxels);
+        if (group_longest > counters[0].longest) atomicMax(counters[0].longest, group_longest);
+    }
+    barrier();
+    if (!valid) return;
+    const uvec2 mask = uvec2(masks[lane >> 6u << 1u], masks[lane >> 6u << 1u | 1u]);
+    voxel_table[(params.first_node + node) * 64u + voxel] =
+        samples != 0u ? 0x80000000u | (params.first_sample + first_sample + start) : ldcGrowBox(mask, voxel);
+}

@@ -1,0 +1,41 @@
+// Adds the camera's level to the picture; not if a queue overflowed, for then the band is done again. After the last sample also what
+// a display shows: exposure, tone curve and sRGB encoding.
+#version 460
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+PARAMS(AccumulateParams)
+BUFFER(readonly, 0, Frame, frame)
+BUFFER(readonly, 1, PathNode, nodes)
+BUFFER(readonly, 2, PathBranches, branches)
+BUFFER(readonly, 3, PathNode, next_nodes)
+BUFFER(readonly, 4, vec3, shadow_light)
+BUFFER(readonly, 5, uint, queue)
+BUFFER(, 6, vec4, picture)
+BUFFER(writeonly, 7, uint, encoded)
+#include "view/camera.glsl"
+#include "path/gather.glsl"
+#include "path/shading.glsl"
+
+uint encode(vec3 radiance) {
+    vec3 color = radiance * params.scale;
+    if (params.curve == 1u) color = tonemapAces(color);
+    if (params.curve == 2u) color = tonemapNeutral(color);
+    return packUnorm4x8(vec4(linearToSrgb(clamp(color, vec3(0), vec3(1))), 1));
+}
+
+void main() {
+    const uint i = GLOBAL_INDEX;
+    if (i >= params.capacity || queue[QUEUE_OVERFLOW] != 0u) return;
+    const uvec2 pixel = recordPixel(i, params.first_row);
+    if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
+    const uint at = pixel.y * frame[0].width + pixel.x;
+    const PathNode node = nodes[i];
+    const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
+    // One bad number must not poison a pixel for good.
+    const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
+    vec4 sum = vec4(finite ? radiance : vec3(0), (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
+    if (params.sample_index > 0u) sum += picture[at];
+    picture[at] = sum;
+    if (params.last != 0u) encoded[at] = encode(sum.rgb);
+}

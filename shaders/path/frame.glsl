@@ -1,0 +1,157 @@
+// Access to the scene during a frame: materials, textures, environment, and the surface at a hit.
+// Include after the buffers it reads: frame, materials, texture_infos, texels, normals, uvs, colors, triangle_materials,
+// positions, triangles, instances, environment. Directions point away from the surface.
+#ifndef PEELRAY_FRAME_GLSL
+#define PEELRAY_FRAME_GLSL
+
+#include "common/placed.glsl"
+#include "path/shading.glsl"
+#include "common/textures.glsl"
+
+/// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
+const float FLATTEST_START = 4.0;
+
+/// What shading needs to know of a hit.
+struct Surface {
+    vec3 position;
+    vec3 geometric;    ///< unit normal of the triangle, on the ray's side
+    vec3 normal;       ///< interpolated, unit, on the ray's side
+    vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
+    vec3 base_color;
+    float error;       ///< bound on the position's rounding error, world units
+    float offset;      ///< height above it from which secondary rays count, world units (planar hits)
+    bool front;        ///< the ray comes from the side that the normals point to
+    uint material;
+};
+
+/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands for.
+const float STRAY_NORMAL = 0.1;
+
+/// How far the position is lifted to the plane through a corner along the corner's normal; `p`: from the corner.
+vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
+    return dot(normal, geometric) > STRAY_NORMAL ? -min(0.0, dot(p, normal)) * normal : vec3(0);
+}
+
+/// Where a shadow ray starts on a coarse smooth mesh: on the surface that the interpolated normals describe, so that its facets
+/// do not shadow each other (Hanika: Hacking the Shadow Terminator, Ray Tracing Gems II, ch. 4).
+vec3 shadowStart(vec3 p, vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc, vec3 geometric, vec3 weights) {
+    return p + lifted(p - a, na, geometric) * weights.x + lifted(p - b, nb, geometric) * weights.y +
+           lifted(p - c, nc, geometric) * weights.z;
+}
+
+/// A normal as its instance turns it, unit: cofactors are the inverse transpose times the determinant.
+vec3 placedNormal(mat3 cofactors, vec3 n) {
+    const vec3 turned = cofactors * n;
+    return dot(turned, turned) > 0.0 ? normalize(turned) : n;
+}
+
+Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
+    Surface s;
+    const uvec3 corners = triangles[triangle];
+    vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
+    vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
+    vec3 reach = max(abs(a), max(abs(b), abs(c)));
+    float turned = 1.0;
+    if (instances[instance].moved != 0u) {
+        const GpuTransform to_world = instances[instance].to_world;
+        const mat3 m = to_world.linear;
+        reach = mat3(abs(m[0]), abs(m[1]), abs(m[2])) * reach + abs(to_world.position);
+        a = placedFrom(to_world, a, vec3(0));
+        b = placedFrom(to_world, b, vec3(0));
+        c = placedFrom(to_world, c, vec3(0));
+        turned = instances[instance].mirrored != 0u ? -1.0 : 1.0;
+        const mat3 cofactors = turned * mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+        na = placedNormal(cofactors, na);
+        nb = placedNormal(cofactors, nb);
+        nc = placedNormal(cofactors, nc);
+    }
+    uv = clamp(uv, vec2(0), vec2(1));  // planar hits may lie beside their triangle
+    const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
+    s.position = a * weights.x + b * weights.y + c * weights.z;
+    s.error = largest(reach) * 1e-6;
+    s.offset = frame[0].surface_offset * instances[instance].voxel + frame[0].tolerance;
+    const vec3 cross_product = turned * cross(b - a, c - a);
+    const float size = length(cross_product);
+    vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;
+    normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0, 1, 0);
+    s.geometric = size > 0.0 ? cross_product / size : normal;
+    s.front = dot(s.geometric, direction) < 0.0;
+    if (!s.front) s.geometric = -s.geometric;
+    // The interpolated normal may disagree with the winding in careless files: it follows the triangle. One that lies in
+    // the triangle's plane stays, whatever rounding makes of its side.
+    const float side = dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1.0 : 1.0;
+    s.normal = visibleNormal(normal * side, s.geometric, -direction);
+    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
+    s.material = triangle_materials[triangle];
+    s.base_color = materials[s.material].base_color;
+    if ((materials[s.material].flags & MATERIAL_COLORED) != 0u)
+        s.base_color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
+    const int texture_index = materials[s.material].texture;
+    if (texture_index >= 0)
+        s.base_color *= sampleTexture(texture_index, uvs[corners.x] * weights.x + uvs[corners.y] * weights.y + uvs[corners.z] * weights.z).rgb;
+    return s;
+}
+
+vec3 environmentTexel(uint level_offset, uvec2 size, int x, int y) {
+    const uint column = uint((x + int(size.x)) % int(size.x)), row = uint(clamp(y, 0, int(size.y) - 1));
+    return environment[level_offset + row * size.x + column].rgb;
+}
+
+vec3 environmentLevel(vec2 uv, uint level) {
+    uint offset = 0u;
+    uvec2 size = frame[0].env_size;
+    for (uint i = 0u; i < level; i++) {
+        offset += size.x * size.y;
+        size = max(size / 2u, uvec2(1));
+    }
+    const vec2 p = uv * vec2(size) - 0.5, f = fract(p);
+    const ivec2 i = ivec2(floor(p));
+    const vec3 top = mix(environmentTexel(offset, size, i.x, i.y), environmentTexel(offset, size, i.x + 1, i.y), f.x);
+    const vec3 bottom = mix(environmentTexel(offset, size, i.x, i.y + 1), environmentTexel(offset, size, i.x + 1, i.y + 1), f.x);
+    return mix(top, bottom, f.y);
+}
+
+/// Radiance of the environment along a unit direction, without the sun's disc; `blur` in [0, 1]: roughness.
+vec3 environmentRadiance(vec3 d, float blur) {
+    const vec2 uv = vec2(0.5 + atan(d.x, -d.z) * (0.5 / PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
+    const float level = blur * float(frame[0].env_levels - 1u);
+    const uint lower = uint(level);
+    const vec3 sharp = environmentLevel(uv, lower);
+    const float part = level - float(lower);
+    return part > 0.0 ? mix(sharp, environmentLevel(uv, min(lower + 1u, frame[0].env_levels - 1u)), part) : sharp;
+}
+
+vec3 skyRadiance(vec3 d, bool sees_sun) {
+    vec3 radiance = environmentRadiance(d, 0.0);
+    if (!sees_sun) radiance *= min(1.0, frame[0].rough_limit / max(largest(radiance), 1e-30));
+    if (sees_sun && dot(d, frame[0].sun_direction) >= frame[0].sun_cosine) radiance += frame[0].sun_radiance;
+    return radiance;
+}
+
+/// Irradiance of the environment on a surface with this normal, from spherical harmonics.
+vec3 environmentIrradiance(vec3 n) {
+    vec3 sum = frame[0].irradiance[0];
+    sum += frame[0].irradiance[1] * n.y + frame[0].irradiance[2] * n.z + frame[0].irradiance[3] * n.x;
+    sum += frame[0].irradiance[4] * (n.x * n.y) + frame[0].irradiance[5] * (n.y * n.z) + frame[0].irradiance[6] * (3.0 * n.z * n.z - 1.0) +
+           frame[0].irradiance[7] * (n.x * n.z) + frame[0].irradiance[8] * (n.x * n.x - n.y * n.y);
+    return max(sum, vec3(0));
+}
+
+/// Light left after a ray of this RayState::medium went the distance `t` (Beer and Lambert).
+vec3 transmittance(uint medium, float t) {
+    medium &= ~RAY_SEES_SUN;
+    return medium == MEDIUM_NONE ? vec3(1) : exp(-materials[medium].absorption * t);
+}
+
+/// A ray along `direction` as far as `reach` from the point `start` of a surface. It starts off the triangle's plane by the
+/// position's error (Wächter, Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems, ch. 6).
+/// Planar hits know surfaces to a voxel only: there a ray counts from where it is Surface::offset above the plane. It
+/// stays on its line until then, unless it is so flat that it would miss too much: then it is lifted as well.
+Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
+    const float slope = dot(direction, s.geometric);
+    const float first = min(s.offset / max(abs(slope), 1e-6), FLATTEST_START * s.offset);
+    const float lift = s.error + (s.offset - first * abs(slope));
+    return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
+}
+
+#endif

@@ -1,0 +1,19 @@
+// Adds the light of a level's children to its nodes: from the deepest level back to the first after the camera's.
+#version 460
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+PARAMS(LevelParams)
+BUFFER(, 0, PathNode, nodes)
+BUFFER(readonly, 1, PathBranches, branches)
+BUFFER(readonly, 2, PathNode, next_nodes)
+BUFFER(readonly, 3, vec3, shadow_light)
+BUFFER(readonly, 4, uint, queue)
+#include "path/gather.glsl"
+
+void main() {
+    const uint i = GLOBAL_INDEX;
+    if (queue[QUEUE_OVERFLOW] != 0u || i >= min(params.capacity, queue[params.level])) return;
+    const PathNode node = nodes[i];
+    if ((node.flags & NODE_BRANCHES) != 0u) nodes[i].radiance = node.radiance + childrenRadiance(i, node);
+}

@@ -1,0 +1,229 @@
+// Shades a hit: what it emits by itself, the next level's rays for what it reflects and lets through, shadow rays for the light that
+// may reach it, and the tree's node. Misses see the environment. The camera's level makes its rays itself, from what the pixels see.
+#version 460
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool camera = false;     // level 0
+layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
+PARAMS(LevelParams)
+#define SCENE_FIRST_BINDING 0
+#define SCENE_WITH_TRIANGLES
+#include "path/scene_buffers.glsl"
+BUFFER(readonly, 12, Ray, rays)
+BUFFER(readonly, 13, RayState, states)
+BUFFER(readonly, 14, Hit, hits)
+BUFFER(writeonly, 15, PathNode, nodes)
+BUFFER(, 16, uint, queue)
+BUFFER(writeonly, 17, Ray, next_rays)
+BUFFER(writeonly, 18, RayState, next_states)
+BUFFER(writeonly, 19, SurfaceId, next_skip)
+BUFFER(writeonly, 20, PathBranches, branches)
+BUFFER(readonly, 21, GpuLight, lights)
+BUFFER(writeonly, 22, Ray, shadow_rays)
+BUFFER(writeonly, 23, SurfaceId, shadow_skip)
+BUFFER(writeonly, 24, vec3, shadow_light)
+BUFFER(readonly, 25, uvec2, visibility)
+BUFFER(readonly, 26, GpuDraw, draws)
+#include "path/frame.glsl"
+#include "path/branches.glsl"
+#include "path/lighting.glsl"
+#include "view/camera.glsl"
+#include "view/camera_hit.glsl"
+#include "view/seen.glsl"
+#include "view/camera_start.glsl"
+#include "common/last_group.glsl"
+
+/// Branches that carry less than this share of the pixel are not traced: they see the environment.
+const float LEAST_WEIGHT = 1.0 / 512.0;
+
+shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
+shared uint group_first;
+shared uint group_first_light;
+
+/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
+vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
+    if (frame[0].spp <= 1u || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
+    vec3 t, b;
+    tangents(s.normal, t, b);
+    const vec3 local = vec3(dot(view, t), dot(view, b), max(1e-4, dot(view, s.normal)));
+    const vec2 random = randomPair(seed, params.sample_index, RANDOM_MICROFACET);
+    const vec3 h = sampleGgx(normalize(local), alpha, random);
+    return normalize(t * h.x + b * h.y + s.normal * h.z);
+}
+
+/// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
+float tracedPart(GpuMaterial m) {
+    if (frame[0].spp > 1u) return m.roughness < 0.6 || m.metallic > 0.5 ? 1.0 : 0.0;
+    return 1.0 - smoothstep(0.2, 0.5, m.roughness);
+}
+
+void decide(inout Branch branch, vec3 path_weight, uint effect) {
+    branch.traced = (frame[0].effects & effect) != 0u && params.level < frame[0].last_level &&
+                    largest(branch.weight * path_weight) >= LEAST_WEIGHT;
+}
+
+void emitRay(uint index, Branch branch, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
+    if (index >= params.next_capacity) return;
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
+    next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
+    next_skip[index] = from;
+}
+
+/// A ray to light `index`.
+Ray lampRay(uint index, Surface s, vec3 direction) {
+    Ray ray = leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
+    if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
+    return ray;
+}
+
+/// A ray to the sky. One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
+Ray skyRay(Surface s, uint seed) {
+    const vec2 random = randomPair(seed, params.sample_index, RANDOM_SKY);
+    vec3 t, b;
+    tangents(s.normal, t, b);
+    const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
+    const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
+    return leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
+}
+
+void emitLight(uint index, Ray ray, SurfaceId from, vec3 light) {
+    if (index >= params.light_capacity) return;
+    shadow_rays[index] = ray;
+    shadow_skip[index] = from;
+    shadow_light[index] = light;
+}
+
+/// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
+vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, out uint rays, out uint sky_rays) {
+    rays = sky_rays = 0u;
+    vec3 sum = vec3(0);
+    for (uint k = 0u; k < frame[0].lights; k++) {
+        vec3 direction;
+        const vec3 light = lampLight(k, s, m, view, direction);
+        if (light == vec3(0)) continue;
+        if ((frame[0].effects & EFFECT_SHADOW) != 0u)
+            rays++;
+        else
+            sum += light;
+    }
+    const vec3 sky = skyLight(s, m, view);
+    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + sky;
+    sky_rays = sky != vec3(0) ? 1u : 0u;
+    rays += sky_rays;
+    return sum;
+}
+
+/// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
+/// the hit is seen from.
+void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, SurfaceId from, uint seed) {
+    if ((frame[0].effects & EFFECT_SHADOW) != 0u)
+        for (uint k = 0u; k < frame[0].lights; k++) {
+            vec3 direction;
+            const vec3 light = lampLight(k, s, m, view, direction);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), from, light * share);
+        }
+    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
+    const vec3 sky = skyLight(s, m, view);
+    if (sky != vec3(0)) emitLight(slot, skyRay(s, seed), from, sky * share);
+}
+
+/// Makes room in the queues for the rays of the workgroup.
+void reserve() {
+    const uint rays = group_counts[0] + group_counts[1];
+    if (rays > 0u) {
+        group_first = atomicAdd(queue[params.level + 1u], rays);
+        if (group_counts[0] > 0u) atomicAdd(queue[QUEUE_REFLECTION], group_counts[0]);
+        if (group_counts[1] > 0u) atomicAdd(queue[QUEUE_REFRACTION], group_counts[1]);
+        if (group_first + rays > params.next_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_PATHS);
+    }
+    if (group_counts[2] > 0u) {
+        group_first_light = atomicAdd(queue[QUEUE_LIGHT], group_counts[2]);
+        if (group_counts[3] > 0u) atomicAdd(queue[QUEUE_AMBIENT], group_counts[3]);
+        if (group_first_light + group_counts[2] > params.light_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_LIGHT);
+    }
+}
+
+/// Workgroups for the next level's rays and for the shadow rays so far. None where something did not fit: all is done again then, and
+/// all that goes on is the counting of shadow rays.
+void countGroups() {
+    const uint overflow = atomicOr(queue[QUEUE_OVERFLOW], 0u);
+    if (params.level < frame[0].last_level)
+        storeRays(params.level + 1u, (overflow & ~OVERFLOW_LIGHT) == 0u ? atomicAdd(queue[params.level + 1u], 0u) : 0u);
+    storeRays(QUEUE_GROUPS_LIGHT, overflow == 0u ? atomicAdd(queue[QUEUE_LIGHT], 0u) : 0u);
+}
+
+void main() {
+    const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
+    if (lane < 4u) group_counts[lane] = 0u;
+    barrier();
+    bool valid = camera ? i < params.capacity : i < min(params.capacity, queue[params.level]);
+    Ray ray;
+    RayState state;
+    Hit hit;
+    if (camera) {
+        const uvec2 pixel = recordPixel(i, params.first_row);
+        valid = valid && pixel.x < frame[0].width && pixel.y < frame[0].height;
+        if (valid) cameraStart(pixel, params.jitter, by_number, ray, state, hit);
+    } else if (valid) {
+        ray = rays[i];
+        state = states[i];
+        hit = hits[i];
+    }
+    PathNode node = PathNode(vec3(0), 0u, 0u);
+    Branch reflection = NO_BRANCH, refraction = NO_BRANCH;
+    Surface s;
+    SurfaceId from = SurfaceId(0u, NO_TRIANGLE);
+    uint slot0 = 0u, slot1 = 0u, light_slot = 0u, light_rays = 0u;
+    vec3 lost = vec3(1), path_weight = vec3(0);
+    if (valid) {
+        from = SurfaceId(hit.instance, hit.triangle);
+        if (hit.triangle == NO_TRIANGLE) {
+            node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+        } else {
+            node.flags = NODE_SURFACE;
+            s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
+            lost = transmittance(state.medium, hit.t);
+            state.weight *= lost;
+            path_weight = state.weight;
+            node.radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
+            // What is not traced sees the environment.
+            if (!reflection.traced) node.radiance += reflection.weight * environmentRadiance(reflection.direction, reflection.blur);
+            if (!refraction.traced) node.radiance += refraction.weight * environmentRadiance(refraction.direction, 0.0);
+            uint sky_rays = 0u;
+            if ((materials[s.material].flags & MATERIAL_UNLIT) == 0u)
+                node.radiance += unshadowedLight(s, materials[s.material], -ray.direction, light_rays, sky_rays);
+            node.radiance *= lost;
+            if (reflection.traced) slot0 = atomicAdd(group_counts[0], 1u);
+            if (refraction.traced) slot1 = atomicAdd(group_counts[1], 1u);
+            if (light_rays > 0u) light_slot = atomicAdd(group_counts[2], light_rays);
+            if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
+        }
+    }
+    barrier();
+    if (lane == 0u) reserve();
+    barrier();
+    if (valid) {
+        if (reflection.traced || refraction.traced) {
+            node.flags |= NODE_BRANCHES;
+            PathBranches children = PathBranches(reflection.weight * lost, NO_CHILD, refraction.weight * lost, NO_CHILD);
+            if (reflection.traced) {
+                children.child0 = group_first + slot0;
+                emitRay(children.child0, reflection, s, from, path_weight, hash3(uvec3(state.seed, 0u, params.level)).x);
+            }
+            if (refraction.traced) {
+                children.child1 = group_first + group_counts[0] + slot1;
+                emitRay(children.child1, refraction, s, from, path_weight, hash3(uvec3(state.seed, 1u, params.level)).x);
+            }
+            branches[i] = children;
+        }
+        if (light_rays > 0u) {
+            node.first_light = group_first_light + light_slot;
+            node.flags |= light_rays;
+            emitLights(node.first_light, s, materials[s.material], -ray.direction, lost, from, state.seed);
+        }
+        nodes[i] = node;
+    }
+    if (lane == 0u && isLastGroup()) countGroups();
+}

@@ -1,0 +1,18 @@
+// Traces the queue of shadow rays in the cubes.
+#include "common/common.glsl"
+#include "common/params.h"
+layout(local_size_x = 64) in;
+#include "path/trace_shadow_options.glsl"
+PARAMS(TraceParams)
+#include "ldc/cube_fetch.glsl"
+#define BASE_COLOR_FIRST_BINDING 14
+#include "common/base_color_buffers.glsl"
+#include "common/alpha_test.glsl"
+#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
+#include "peelray/peelray.glsl"
+#define SHADOW_FIRST_BINDING 10
+#include "path/trace_shadow.glsl"
+
+PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return peelrayTrace(params.tree, ray, skip, shadowOptions(any)); }
+
+void main() { shadowRay(GLOBAL_INDEX, params.count); }

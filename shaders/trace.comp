@@ -1,4 +1,0 @@
-// Traces a queue of rays in the cubes by voxel.
-#version 460
-#define PEELRAY_ONLY_VOXELS
-#include "trace_one.glsl"

@@ -1,4 +1,0 @@
-// Traces a queue of rays in the cubes by pixel.
-#version 460
-#define PEELRAY_ONLY_PIXELS
-#include "trace_one.glsl"

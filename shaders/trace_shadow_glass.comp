@@ -1,4 +1,0 @@
-// Traces the queue of shadow rays through glass by voxel.
-#version 460
-#define PEELRAY_ONLY_VOXELS
-#include "trace_shadow_glass.glsl"

@@ -1,4 +1,0 @@
-// Traces the queue of shadow rays through glass by pixel.
-#version 460
-#define PEELRAY_ONLY_PIXELS
-#include "trace_shadow_glass.glsl"

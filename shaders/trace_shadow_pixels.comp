@@ -1,4 +1,0 @@
-// Traces the queue of shadow rays by pixel.
-#version 460
-#define PEELRAY_ONLY_PIXELS
-#include "trace_shadow_rays.glsl"

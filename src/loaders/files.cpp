@@ -1,0 +1,117 @@
+#include "loaders/files.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <climits>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace peelray {
+
+namespace fs = std::filesystem;
+
+Bytes read_file(const fs::path& path, const std::string& where) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    const std::string name = (where.empty() ? "" : where + ": ") + printable(path.string(), 1000);
+    if (!fs::exists(status)) fail("{}: no such file; check the path", name);
+    if (!fs::is_regular_file(status)) fail("{}: not a regular file; check the path", name);
+    const uintmax_t size = fs::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream) fail("{}: cannot be read; check its permissions", name);
+    Bytes bytes(size);
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    if (static_cast<uintmax_t>(stream.gcount()) != size)
+        fail("{}: only {} of {} bytes could be read", name, stream.gcount(), size);
+    return bytes;
+}
+
+void remember_file(std::vector<fs::path>& files, const fs::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+}
+
+namespace {
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+/// "http:", "file:", also "C:": a letter followed by letters, digits, '+', '-', '.' up to a colon.
+bool has_scheme(std::string_view uri) {
+    const size_t colon = uri.find(':');
+    if (colon == std::string_view::npos || colon == 0 || !std::isalpha(static_cast<unsigned char>(uri[0])))
+        return false;
+    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon),
+                       [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
+}
+
+}  // namespace
+
+std::string percent_decode(std::string_view text, const std::string& where) {
+    std::string out;
+    out.reserve(text.size());
+    for (size_t i = 0; i < text.size(); ++i) {
+        char c = text[i];
+        if (c == '%') {
+            const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+            const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
+            if (high < 0 || low < 0)
+                fail("{}: the URI \"{}\" has a stray '%'; write it as %25", where, printable(text));
+            c = static_cast<char>(high * 16 + low);
+            i += 2;
+        }
+        if (c == 0) fail("{}: the URI \"{}\" holds a zero byte", where, printable(text));
+        out += c;
+    }
+    return out;
+}
+
+bool is_data_uri(std::string_view uri) {
+    return uri.starts_with("data:");
+}
+
+Bytes decode_data_uri(std::string_view uri, const std::string& where) {
+    const size_t comma = uri.find(',');
+    if (!is_data_uri(uri) || comma == std::string_view::npos)
+        fail("{}: \"{}\" is no valid data URI", where, printable(uri, 40));
+    const std::string_view header = uri.substr(0, comma), body = uri.substr(comma + 1);
+    if (header.ends_with(";base64")) {
+        // tinygltf knows a few media types only; its decoder ignores which, and stops at the first foreign character.
+        Bytes bytes;
+        std::string unused;
+        if (body.size() > INT_MAX / 2) fail("{}: the base64 data is larger than 1 GiB; use a file", where);
+        if (!tinygltf::DecodeDataURI(&bytes, unused, "data:application/octet-stream;base64," + std::string(body), 0,
+                                     false))
+            fail("{}: no bytes in the base64 data", where);
+        return bytes;
+    }
+    const std::string text = percent_decode(body, where);
+    return {text.begin(), text.end()};
+}
+
+fs::path resolve_inside(const fs::path& folder, const std::string& relative, const std::string& where) {
+    const std::string shown = printable(relative);
+    const fs::path wanted(relative);
+    if (relative.empty()) fail("{}: the URI is empty", where);
+    if (wanted.is_absolute() || relative[0] == '\\')
+        fail("{}: refused to read the absolute path \"{}\"; keep the file in the scene's folder", where, shown);
+    // A file really called "a:b" is fine; "http://…", "file:…" and "C:…" are not ours to open.
+    std::error_code error;
+    if (has_scheme(relative) && !fs::exists(folder / wanted, error))
+        fail("{}: refused to read \"{}\"; only files in the scene's folder and data: URIs are read", where, shown);
+    const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+    if (error) fail("{}: the folder {} cannot be resolved: {}", where, folder.string(), error.message());
+    const fs::path target = fs::weakly_canonical(root / wanted, error);
+    if (error) fail("{}: \"{}\" cannot be resolved: {}", where, shown, error.message());
+    const auto [end, unused] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
+    if (end != root.end()) fail("{}: refused to read \"{}\", which leads outside the scene's folder", where, shown);
+    return target;
+}
+
+}  // namespace peelray

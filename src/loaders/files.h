@@ -1,0 +1,32 @@
+// Reading files and URIs on behalf of a scene file: nothing outside the scene file's folder is ever opened.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace peelray {
+
+using Bytes = std::vector<uint8_t>;
+
+/// The whole file. Throws Error when it is missing, no regular file, or unreadable; `where` says who asked for it.
+Bytes read_file(const std::filesystem::path& path, const std::string& where = "");
+
+/// Adds a file to those that were read, unless it is there already.
+void remember_file(std::vector<std::filesystem::path>& files, const std::filesystem::path& file);
+
+/// Undoes %XX. Throws Error (prefixed with `where`) for a stray '%' or a NUL byte.
+std::string percent_decode(std::string_view text, const std::string& where);
+
+/// Decodes "data:[type][;base64],…"; throws Error for what is no valid data URI.
+Bytes decode_data_uri(std::string_view uri, const std::string& where);
+bool is_data_uri(std::string_view uri);
+
+/// The file that `relative` (decoded, UTF-8) names inside `folder`. Throws Error for an absolute path, a scheme such as
+/// http: or file:, and for whatever leads out of the folder once ".." and symbolic links are resolved.
+std::filesystem::path resolve_inside(const std::filesystem::path& folder, const std::string& relative,
+                                     const std::string& where);
+
+}  // namespace peelray

@@ -1,0 +1,36 @@
+#include "loaders/gltf.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "loaders/gltf_check.h"
+
+namespace peelray {
+
+void GltfLoader::read_extensions() {
+    for (const std::string& name : file.model().extensionsUsed) {
+        scene.extensions_used.push_back(printable(name, 60));
+        if (!is_supported_extension(name)) scene.extensions_unsupported.push_back(printable(name, 60));
+    }
+    std::sort(scene.extensions_used.begin(), scene.extensions_used.end());
+    std::sort(scene.extensions_unsupported.begin(), scene.extensions_unsupported.end());
+}
+
+void GltfLoader::write_notes() {
+    for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
+}
+
+Scene load_gltf(const std::filesystem::path& path) {
+    GltfLoader loader(path);
+    loader.scene.name = loader.file.name();
+    loader.read_extensions();
+    loader.read_materials();
+    loader.read_nodes();
+    loader.read_skins();
+    loader.read_animations();
+    loader.write_notes();
+    loader.scene.files = loader.file.files();
+    return std::move(loader.scene);
+}
+
+}  // namespace peelray

@@ -1,0 +1,220 @@
+#include <algorithm>
+
+#include "base/text.h"
+#include "loaders/gltf.h"
+#include "loaders/images.h"
+
+namespace peelray {
+
+namespace {
+
+float unit(double value) {
+    return static_cast<float>(std::clamp(value, 0.0, 1.0));
+}
+
+glm::vec3 to_vec3(const std::vector<double>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Texture::Wrap wrap_mode(int mode, const std::string& where) {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Texture::Wrap::clamp;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Texture::Wrap::mirror;
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return Texture::Wrap::repeat;
+        default:
+            fail("{}: {} is no wrap mode", where, mode);
+    }
+}
+
+/// An extension's object; tinygltf's null value, which has no members, where it is missing.
+const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    static const tinygltf::Value none;
+    const auto found = extensions.find(name);
+    return found == extensions.end() ? none : found->second;
+}
+
+double number(const tinygltf::Value& object, const char* key, double missing) {
+    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : missing;
+}
+
+template <typename Vector>
+Vector vector(const tinygltf::Value& object, const char* key, Vector missing) {
+    if (object.Has(key))
+        for (int i = 0; i < Vector::length(); ++i)
+            missing[i] = static_cast<float>(object.Get(key).Get(i).GetNumberAsDouble());
+    return missing;
+}
+
+/// The texture that an extension's textureInfo shows, -1: none.
+int texture_index(const tinygltf::Value& object, const char* key) {
+    return object.Has(key) ? object.Get(key).Get("index").GetNumberAsInt() : -1;
+}
+
+class MaterialReader {
+  public:
+    MaterialReader(GltfLoader& loader, size_t index)
+        : loader_(loader), model_(loader.file.model()), from_(model_.materials[index]), index_(index) {}
+
+    void read() {
+        material_.name = from_.name;
+        read_metallic_roughness();
+        read_emission();
+        read_transmission();
+        material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
+        ignore(from_.normalTexture.index, "{} normal maps ignored");
+        ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
+        read_alpha_mode();
+        loader_.scene.materials.push_back(std::move(material_));
+        loader_.uv_sources.push_back(uv_);
+    }
+
+  private:
+    void read_metallic_roughness() {
+        const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
+        material_.base_color = glm::clamp(to_vec3(pbr.baseColorFactor), 0.f, 1.f);
+        material_.alpha = unit(pbr.baseColorFactor[3]);
+        material_.metallic = unit(pbr.metallicFactor);
+        material_.roughness = unit(pbr.roughnessFactor);
+        if (pbr.baseColorTexture.index >= 0) read_base_color(pbr.baseColorTexture);
+        if (const auto mean = mean_of(pbr.metallicRoughnessTexture.index, false)) {
+            material_.roughness *= mean->y;
+            material_.metallic *= mean->z;
+            ++loader_.ignored["{} metallic-roughness textures replaced by their mean"];
+        }
+    }
+
+    void read_alpha_mode() {
+        const std::string& mode = from_.alphaMode;
+        if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+            fail("{}: alphaMode \"{}\" is unknown; it must be OPAQUE, MASK or BLEND",
+                 loader_.file.where("materials", index_), printable(mode, 20));
+        if (from_.alphaCutoff < 0)
+            fail("{}: alphaCutoff {} must not be below 0", loader_.file.where("materials", index_), from_.alphaCutoff);
+        if (mode == "MASK") material_.alpha_cutoff = static_cast<float>(from_.alphaCutoff);
+        if (mode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
+    }
+
+    void read_emission() {
+        const tinygltf::Value& strength = extension(from_.extensions, "KHR_materials_emissive_strength");
+        material_.emissive =
+            to_vec3(from_.emissiveFactor) * static_cast<float>(number(strength, "emissiveStrength", 1));
+        material_.emissive = glm::max(material_.emissive, glm::vec3(0));
+        if (const auto mean = mean_of(from_.emissiveTexture.index, true)) {
+            material_.emissive *= glm::vec3(*mean);
+            ++loader_.ignored["{} emissive textures replaced by their mean"];
+        }
+    }
+
+    void read_transmission() {
+        const tinygltf::Value& transmission = extension(from_.extensions, "KHR_materials_transmission");
+        const tinygltf::Value& volume = extension(from_.extensions, "KHR_materials_volume");
+        material_.transmission = unit(number(transmission, "transmissionFactor", 0));
+        if (const auto mean = mean_of(texture_index(transmission, "transmissionTexture"), false)) {
+            material_.transmission *= mean->x;
+            ++loader_.ignored["{} transmission textures replaced by their mean"];
+        }
+        // The extension allows 0 for "reflects everything", which no ray can be bent by; below 1 there is no such
+        // medium.
+        const tinygltf::Value& ior = extension(from_.extensions, "KHR_materials_ior");
+        material_.ior = std::max(1.f, static_cast<float>(number(ior, "ior", 1.5)));
+        material_.thickness = std::max(0.f, static_cast<float>(number(volume, "thicknessFactor", 0)));
+        ignore(texture_index(volume, "thicknessTexture"), "{} thickness textures ignored");
+        material_.attenuation_color = glm::clamp(vector(volume, "attenuationColor", glm::vec3(1)), 0.f, 1.f);
+        if (volume.Has("attenuationDistance")) {
+            const double distance = number(volume, "attenuationDistance", 0);
+            if (distance <= 0)
+                fail("{}: attenuationDistance {} must be above 0", loader_.file.where("materials", index_), distance);
+            material_.attenuation_distance = static_cast<float>(distance);
+        }
+    }
+
+    void read_base_color(const tinygltf::TextureInfo& info) {
+        const tinygltf::Value& transform = extension(info.extensions, "KHR_texture_transform");
+        uv_.set = static_cast<uint32_t>(number(transform, "texCoord", info.texCoord));
+        uv_.offset = vector(transform, "offset", uv_.offset);
+        uv_.scale = vector(transform, "scale", uv_.scale);
+        uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
+        const std::optional<int> image = image_of(info.index);
+        uv_.used = image.has_value();
+        if (image) material_.base_color_texture = texture_id(*image, info.index);
+    }
+
+    /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
+    void ignore(int texture, const char* sentence) {
+        if (texture < 0) return;
+        ++loader_.ignored[sentence];
+        if (const auto image = image_if_there(texture)) check_image(loader_.file.image_bytes(*image), where(*image));
+    }
+
+    /// The image that a texture shows; none (with a note) where only an extension's format is offered.
+    std::optional<int> image_of(int texture) {
+        const int image = model_.textures[static_cast<size_t>(texture)].source;
+        if (image >= 0) return image;
+        ++loader_.ignored["{} textures without a PNG or JPEG source ignored"];
+        return std::nullopt;
+    }
+
+    /// The same for a texture whose texels the picture does not show: a file that is not there is no reason to give up.
+    std::optional<int> image_if_there(int texture) {
+        const std::optional<int> image = image_of(texture);
+        if (!image || !loader_.file.is_image_missing(*image)) return image;
+        ++loader_.ignored["{} textures other than of the base colour left out, their image files are missing"];
+        return std::nullopt;
+    }
+
+    int texture_id(int image, int texture) {
+        const int index = model_.textures[static_cast<size_t>(texture)].sampler;
+        const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
+        const std::string at = loader_.file.where("samplers", static_cast<size_t>(std::max(index, 0)));
+        const Texture::Wrap u = wrap_mode(sampler.wrapS, at + ".wrapS"), v = wrap_mode(sampler.wrapT, at + ".wrapT");
+        const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+        const auto [entry, added] =
+            loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
+        if (added) {
+            const std::string& name = model_.images[static_cast<size_t>(image)].name;
+            Texture decoded = decode_image(loader_.file.image_bytes(image), where(image));
+            decoded.name = name.empty() ? loader_.file.image_file(image) : name;
+            decoded.wrap_u = u;
+            decoded.wrap_v = v;
+            decoded.nearest = nearest;
+            loader_.scene.textures.push_back(std::move(decoded));
+        }
+        return entry->second;
+    }
+
+    /// The place of an image in messages, with its file where it has one.
+    std::string where(int image) const {
+        const std::string place = loader_.file.where("images", static_cast<size_t>(image));
+        const std::string name = loader_.file.image_file(image);
+        return name.empty() ? place : fmt::format("{} ({})", place, printable(name, 80));
+    }
+
+    std::optional<glm::vec4> mean_of(int texture, bool srgb) {
+        const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture);
+        if (!image) return std::nullopt;
+        return mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
+    }
+
+    GltfLoader& loader_;
+    const tinygltf::Model& model_;
+    const tinygltf::Material& from_;
+    const size_t index_;
+    Material material_;
+    UvSource uv_;
+};
+
+}  // namespace
+
+void GltfLoader::read_materials() {
+    for (size_t i = 0; i < file.model().materials.size(); ++i) MaterialReader(*this, i).read();
+    Material fallback;
+    fallback.name = "default";
+    fallback.metallic = 1;  // the format's defaults
+    scene.materials.push_back(std::move(fallback));
+    uv_sources.emplace_back();
+}
+
+}  // namespace peelray

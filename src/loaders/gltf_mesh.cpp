@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <cmath>
+
+#include "loaders/gltf.h"
+#include "scene/normals.h"
+
+namespace peelray {
+
+namespace {
+
+class PrimitiveReader {
+  public:
+    PrimitiveReader(GltfLoader& loader, const tinygltf::Primitive& from, std::string where)
+        : loader_(loader), from_(from), where_(std::move(where)) {}
+
+    /// False where the primitive has no triangles to show (points, lines, no positions).
+    bool read(Primitive& out) {
+        if (from_.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+            fail("{}.mode: {} is no primitive mode (0 to 6)", where_, from_.mode);
+        if (from_.mode < TINYGLTF_MODE_TRIANGLES) {
+            ++loader_.ignored["{} primitives of points or lines dropped"];
+            return false;
+        }
+        if (!has("POSITION")) {
+            ++loader_.ignored["{} primitives without positions dropped"];
+            return false;
+        }
+        out.material =
+            static_cast<uint32_t>(from_.material >= 0 ? size_t(from_.material) : loader_.scene.materials.size() - 1);
+        out.positions = vectors<glm::vec3>("POSITION");
+        check_positions(out);
+        read_triangles(out, from_.mode);
+        read_attributes(out);
+        return true;
+    }
+
+  private:
+    bool has(const char* name) const { return from_.attributes.count(name) > 0; }
+
+    template <typename Vector>
+    std::vector<Vector> vectors(const char* name) {
+        return vectors_of<Vector>(from_.attributes.at(name), name);
+    }
+
+    template <typename Vector>
+    std::vector<Vector> vectors_of(int accessor, const char* name) {
+        const GltfFile::Accessor info = loader_.file.accessor(accessor);
+        constexpr auto components = static_cast<uint32_t>(Vector::length());
+        if (info.components != components)
+            fail("{}: {} needs {} components, {} has {}", where_, name, components, info.where, info.components);
+        const std::vector<float> values = loader_.file.floats(accessor);
+        std::vector<Vector> out(info.count);
+        for (size_t i = 0; i < out.size(); ++i)
+            for (uint32_t c = 0; c < components; ++c) out[i][static_cast<int>(c)] = values[i * components + c];
+        return out;
+    }
+
+    void check_count(const char* name, size_t count, const Primitive& out) const {
+        if (count != out.positions.size())
+            fail("{}: {} has {} elements, POSITION has {}", where_, name, count, out.positions.size());
+    }
+
+    void check_positions(const Primitive& out) const {
+        for (size_t i = 0; i < out.positions.size(); ++i) {
+            const glm::vec3& p = out.positions[i];
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                fail("{}: vertex {} is at ({}, {}, {}); repair the mesh, positions must be finite", where_, i, p.x, p.y,
+                     p.z);
+        }
+    }
+
+    void read_triangles(Primitive& out, int mode) {
+        std::vector<uint32_t> corners;
+        if (from_.indices >= 0) {
+            corners = loader_.file.integers(from_.indices);
+            for (size_t i = 0; i < corners.size(); ++i)
+                if (corners[i] >= out.positions.size())
+                    fail("{}: index {} is {}, the primitive has {} vertices", where_, i, corners[i],
+                         out.positions.size());
+        } else {
+            corners.resize(out.positions.size());
+            for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<uint32_t>(i);
+        }
+        const size_t count = mode == TINYGLTF_MODE_TRIANGLES ? corners.size() / 3
+                             : corners.size() < 3            ? 0
+                                                             : corners.size() - 2;
+        out.triangles.resize(count);
+        for (size_t i = 0; i < count; ++i) {
+            // The format's own order of corners, section 3.7.2.1: the provoking vertex comes first.
+            if (mode == TINYGLTF_MODE_TRIANGLES)
+                out.triangles[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+            if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+                out.triangles[i] = {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]};
+            if (mode == TINYGLTF_MODE_TRIANGLE_FAN) out.triangles[i] = {corners[i + 1], corners[i + 2], corners[0]};
+        }
+        if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3)
+            ++loader_.ignored["{} primitives with one or two indices too many"];
+    }
+
+    void read_attributes(Primitive& out) {
+        if (has("NORMAL")) {
+            out.normals = vectors<glm::vec3>("NORMAL");
+            check_count("NORMAL", out.normals.size(), out);
+        }
+        read_uvs(out);
+        read_colors(out);
+        read_joints(out);
+        read_targets(out);
+        if (out.normals.empty())
+            make_flat(out);
+        else if (const size_t repaired = repair_normals(out))
+            loader_.ignored["{} normals without direction replaced"] += repaired;
+    }
+
+    void read_uvs(Primitive& out) {
+        const UvSource& source = loader_.uv_sources[out.material];
+        const std::string name = fmt::format("TEXCOORD_{}", source.used ? source.set : 0);
+        if (!has(name.c_str())) return;
+        out.uvs = vectors<glm::vec2>(name.c_str());
+        check_count(name.c_str(), out.uvs.size(), out);
+        const float c = std::cos(source.rotation), s = std::sin(source.rotation);
+        for (glm::vec2& uv : out.uvs) {
+            if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
+            const glm::vec2 scaled = uv * source.scale;
+            uv = glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + source.offset;
+        }
+    }
+
+    void read_colors(Primitive& out) {
+        if (!has("COLOR_0")) return;
+        if (loader_.file.accessor(from_.attributes.at("COLOR_0")).components == 3) {
+            for (const glm::vec3& color : vectors<glm::vec3>("COLOR_0")) out.colors.emplace_back(color, 1.f);
+        } else {
+            out.colors = vectors<glm::vec4>("COLOR_0");
+        }
+        check_count("COLOR_0", out.colors.size(), out);
+        for (glm::vec4& color : out.colors)
+            for (int i = 0; i < 4; ++i) color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.f, 1.f) : 1.f;
+    }
+
+    /// JOINTS_0 with WEIGHTS_0 and JOINTS_1 with WEIGHTS_1; whether the joints exist is for the skin to say.
+    void read_joints(Primitive& out) {
+        size_t read = 0;
+        for (int set = 0; set < JointWeights::most / 4; ++set) {
+            const std::string joints = fmt::format("JOINTS_{}", set), weights = fmt::format("WEIGHTS_{}", set);
+            if (!has(joints.c_str()) || !has(weights.c_str())) break;
+            read_joint_set(out, set, joints.c_str(), weights.c_str());
+            read += 2;
+        }
+        const auto there = std::count_if(from_.attributes.begin(), from_.attributes.end(), [](const auto& attribute) {
+            return attribute.first.starts_with("JOINTS_") || attribute.first.starts_with("WEIGHTS_");
+        });
+        if (static_cast<size_t>(there) > read)
+            ++loader_.ignored
+                  ["{} primitives with sets of joints or weights that lack their other half, or beyond "
+                   "eight a vertex: those sets ignored"];
+        rescale_weights(out);
+    }
+
+    void read_joint_set(Primitive& out, int set, const char* joints, const char* weights) {
+        const GltfFile::Accessor info = loader_.file.accessor(from_.attributes.at(joints));
+        const bool is_unsigned =
+            info.component_type == 5121 || info.component_type == 5123 || info.component_type == 5125;
+        if (!is_unsigned || info.normalized)
+            fail("{}: {} must be unsigned integers, {} are {}components of type {}", where_, joints, info.where,
+                 info.normalized ? "normalized " : "", info.component_type);
+        const std::vector<glm::vec4> j = vectors<glm::vec4>(joints), w = vectors<glm::vec4>(weights);
+        check_count(joints, j.size(), out);
+        check_count(weights, w.size(), out);
+        out.joints.resize(out.positions.size());
+        size_t refused = 0;
+        for (size_t i = 0; i < j.size(); ++i)
+            for (int k = 0; k < 4; ++k) {
+                const auto slot = static_cast<size_t>(4 * set + k);
+                out.joints[i].joints[slot] = static_cast<uint16_t>(std::clamp(j[i][k], 0.f, 65535.f));
+                const bool is_weight = std::isfinite(w[i][k]) && w[i][k] >= 0;
+                out.joints[i].weights[slot] = is_weight ? w[i][k] : 0.f;
+                refused += !is_weight;
+            }
+        if (refused) loader_.ignored["{} joint weights that are negative or not finite count as 0"] += refused;
+    }
+
+    void rescale_weights(Primitive& out) {
+        size_t rescaled = 0, unheld = 0;
+        for (JointWeights& vertex : out.joints) {
+            double sum = 0;
+            for (const float weight : vertex.weights) sum += weight;
+            if (!(sum > 0)) {
+                ++unheld;
+                continue;
+            }
+            rescaled += std::abs(sum - 1) > 1e-2;
+            for (float& weight : vertex.weights) weight = static_cast<float>(weight / sum);
+        }
+        if (rescaled) loader_.ignored["{} vertices whose joint weights do not sum to one rescaled"] += rescaled;
+        if (unheld) loader_.ignored["{} vertices that no joint holds follow their node"] += unheld;
+    }
+
+    void read_targets(Primitive& out) {
+        for (size_t i = 0; i < from_.targets.size(); ++i) {
+            MorphTarget target;
+            for (const auto& [name, accessor] : from_.targets[i]) {
+                if (name != "POSITION" && name != "NORMAL") continue;
+                std::vector<glm::vec3>& values = name == "POSITION" ? target.positions : target.normals;
+                values = vectors_of<glm::vec3>(accessor, name.c_str());
+                check_count(fmt::format("targets[{}].{}", i, name).c_str(), values.size(), out);
+                for (glm::vec3& v : values)
+                    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+                        fail("{}: targets[{}].{} is not finite; repair the mesh", where_, i, name);
+            }
+            out.targets.push_back(std::move(target));
+        }
+    }
+
+    GltfLoader& loader_;
+    const tinygltf::Primitive& from_;
+    const std::string where_;
+};
+
+}  // namespace
+
+void GltfLoader::read_mesh(uint32_t index) {
+    const std::vector<tinygltf::Primitive>& primitives = file.model().meshes[index].primitives;
+    Mesh& mesh = scene.meshes[index];
+    mesh.name = file.model().meshes[index].name;
+    mesh.weights.assign(file.model().meshes[index].weights.begin(), file.model().meshes[index].weights.end());
+    for (size_t i = 0; i < primitives.size(); ++i) {
+        const std::string where = fmt::format("{}.primitives[{}]", file.where("meshes", index), i);
+        Primitive out;
+        if (!PrimitiveReader(*this, primitives[i], where).read(out)) continue;
+        triangles += out.triangles.size();
+        if (triangles > (uint64_t(1) << 28))
+            fail("{}: more than {} triangles so far; split the scene", where, uint64_t(1) << 28);
+        mesh.primitives.push_back(std::move(out));
+    }
+}
+
+}  // namespace peelray

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/text.h"
+#include "loaders/gltf.h"
+#include "scene/transform.h"
+
+namespace peelray {
+
+namespace {
+
+void check_finite(const glm::mat4& m, const std::string& where) {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(m[c][r])) fail("{}: the transform is not finite; repair the node", where);
+}
+
+glm::vec3 to_vec3(const std::vector<double>& v, const glm::vec3& missing) {
+    return v.empty() ? missing : glm::vec3(v[0], v[1], v[2]);
+}
+
+/// From x, y, z, w; a rotation without direction counts as none.
+template <typename T>
+glm::quat rotation_of(const T* xyzw) {
+    glm::quat rotation;
+    rotation.x = static_cast<float>(xyzw[0]), rotation.y = static_cast<float>(xyzw[1]);
+    rotation.z = static_cast<float>(xyzw[2]), rotation.w = static_cast<float>(xyzw[3]);
+    const float length = glm::length(rotation);
+    return length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
+}
+
+Placement placement_of(const tinygltf::Node& from) {
+    Placement out;
+    if (!from.rotation.empty()) out.rotation = rotation_of(from.rotation.data());
+    out.translation = to_vec3(from.translation, glm::vec3(0));
+    out.scale = to_vec3(from.scale, glm::vec3(1));
+    return out;
+}
+
+class NodeReader {
+  public:
+    explicit NodeReader(GltfLoader& loader)
+        : loader_(loader), model_(loader.file.model()), visited_(model_.nodes.size()), read_(model_.meshes.size()) {}
+
+    void read() {
+        // A stack of our own: the depth of a hierarchy is the file's choice, the call stack's is not.
+        std::vector<std::pair<int, int>> todo;  // node, parent in Scene::nodes
+        const auto push = [&](const std::vector<int>& nodes, int parent) {
+            for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) todo.emplace_back(*node, parent);
+        };
+        push(root_nodes(), -1);
+        while (!todo.empty()) {
+            const auto [index, parent] = todo.back();
+            todo.pop_back();
+            const auto i = static_cast<size_t>(index);
+            if (visited_[i])
+                fail("{}: the node is reached twice: it has two parents or is part of a cycle; repair the hierarchy",
+                     loader_.file.where("nodes", i));
+            visited_[i] = true;
+            push(model_.nodes[i].children, add_node(i, parent));
+        }
+        aim_cameras();
+    }
+
+  private:
+    std::vector<int> root_nodes() const {
+        if (!model_.scenes.empty()) return model_.scenes[static_cast<size_t>(std::max(model_.defaultScene, 0))].nodes;
+        std::vector<bool> is_child(model_.nodes.size());
+        for (const tinygltf::Node& node : model_.nodes)
+            for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
+        std::vector<int> roots;
+        for (size_t i = 0; i < is_child.size(); ++i)
+            if (!is_child[i]) roots.push_back(static_cast<int>(i));
+        return roots;
+    }
+
+    int add_node(size_t index, int parent) {
+        const tinygltf::Node& from = model_.nodes[index];
+        Node node;
+        node.name = from.name;
+        node.parent = parent;
+        node.source = static_cast<int>(index);
+        node.fixed = !from.matrix.empty();
+        node.rest = placement_of(from);
+        node.local = node.rest.matrix();
+        for (int i = 0; i < 16 && node.fixed; ++i)
+            node.local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
+        node.skin = from.skin;
+        node.rest_weights.assign(from.weights.begin(), from.weights.end());
+        node.weights = node.rest_weights;
+        const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
+        check_finite(world, loader_.file.where("nodes", index));
+        if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
+        if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
+        if (const auto light = from.extensions.find("KHR_lights_punctual");
+            light != from.extensions.end() && light->second.Has("light"))
+            node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
+        const std::vector<glm::mat4> instances = instances_of(index);
+        loader_.scene.nodes.push_back(std::move(node));
+        worlds_.push_back(world);
+        const int added = static_cast<int>(worlds_.size()) - 1;
+        if (!instances.empty()) add_instances(added, instances);
+        return added;
+    }
+
+    /// EXT_mesh_gpu_instancing: transforms inside of the node; none: the mesh is shown once.
+    std::vector<glm::mat4> instances_of(size_t index) {
+        const tinygltf::Node& from = model_.nodes[index];
+        const auto extension = from.extensions.find("EXT_mesh_gpu_instancing");
+        if (extension == from.extensions.end() || from.mesh < 0) return {};
+        if (from.skin >= 0) {
+            ++loader_.ignored["{} nodes with a skin and EXT_mesh_gpu_instancing shown once"];
+            return {};
+        }
+        const std::string where = loader_.file.where("nodes", index) + ".extensions.EXT_mesh_gpu_instancing";
+        std::optional<uint32_t> count;
+        const auto read = [&](const char* name, uint32_t components) -> std::vector<float> {
+            const tinygltf::Value& attributes = extension->second.Get("attributes");
+            if (!attributes.Has(name)) return {};
+            const int accessor = attributes.Get(name).GetNumberAsInt();
+            const GltfFile::Accessor info = loader_.file.accessor(accessor);
+            if (info.components != components)
+                fail("{}: {} needs {} numbers an instance, {} has {}", where, name, components, info.where,
+                     info.components);
+            if (count && *count != info.count)
+                fail("{}: {} has {} instances, another attribute {}", where, name, info.count, *count);
+            count = info.count;
+            return loader_.file.floats(accessor);
+        };
+        const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                                 scales = read("SCALE", 3);
+        std::vector<glm::mat4> out;
+        for (size_t i = 0; i < count.value_or(0); ++i) {
+            Placement at;
+            if (!translations.empty()) at.translation = glm::make_vec3(&translations[3 * i]);
+            if (!rotations.empty()) at.rotation = rotation_of(&rotations[4 * i]);
+            if (!scales.empty()) at.scale = glm::make_vec3(&scales[3 * i]);
+            out.push_back(at.matrix());
+            check_finite(out.back(), fmt::format("{}: instance {}", where, i));
+        }
+        return out;
+    }
+
+    /// The node's mesh, shown by children that stand where the instances are.
+    void add_instances(int parent, const std::vector<glm::mat4>& instances) {
+        const auto p = static_cast<size_t>(parent);
+        Node node;
+        node.name = loader_.scene.nodes[p].name;
+        node.parent = parent;
+        node.mesh = std::exchange(loader_.scene.nodes[p].mesh, -1);
+        node.weights = node.rest_weights = loader_.scene.nodes[p].weights;
+        for (const glm::mat4& instance : instances) {
+            node.local = instance;
+            loader_.scene.nodes.push_back(node);
+            worlds_.push_back(worlds_[p] * instance);
+        }
+    }
+
+    int show_mesh(int mesh) {
+        const auto i = static_cast<size_t>(mesh);
+        loader_.scene.meshes.resize(model_.meshes.size());
+        if (!read_[i]) loader_.read_mesh(static_cast<uint32_t>(i));
+        read_[i] = true;
+        return mesh;
+    }
+
+    int add_camera(size_t index, const Node& node, const glm::mat4& world) {
+        const tinygltf::Camera& from = model_.cameras[index];
+        const std::string where = loader_.file.where("cameras", index);
+        Camera camera;
+        camera.name = from.name.empty() ? node.name : from.name;
+        const Pose pose(world);
+        camera.eye = pose.at;
+        camera.look = pose.at + pose.ahead;
+        camera.up = pose.up;
+        if (from.type == "perspective") {
+            camera.vertical_fov = static_cast<float>(from.perspective.yfov);
+            if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
+                fail("{}: yfov {} is outside of (0, pi)", where, camera.vertical_fov);
+        } else {
+            camera.orthographic_height = 2 * std::abs(static_cast<float>(from.orthographic.ymag));
+            if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", where);
+        }
+        loader_.scene.cameras.push_back(std::move(camera));
+        return static_cast<int>(loader_.scene.cameras.size()) - 1;
+    }
+
+    int add_light(size_t index, const Node& node, const glm::mat4& world) {
+        const tinygltf::Light& from = model_.lights[index];
+        Light light;
+        light.name = from.name.empty() ? node.name : from.name;
+        if (from.type == "point")
+            light.kind = Light::Kind::point;
+        else if (from.type == "spot")
+            light.kind = Light::Kind::spot;
+        else if (from.type != "directional")
+            fail("{}: the light type \"{}\" is unknown", loader_.file.where("lights", index), printable(from.type, 20));
+        light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
+        const Pose pose(world);
+        light.position = pose.at;
+        light.direction = pose.ahead;
+        if (from.range > 0) light.range = static_cast<float>(from.range);
+        light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
+        light.outer_cone = static_cast<float>(from.spot.outerConeAngle);
+        loader_.scene.lights.push_back(std::move(light));
+        return static_cast<int>(loader_.scene.lights.size()) - 1;
+    }
+
+    // A glTF camera has no target; ours looks at the point of its axis that is nearest to the middle of the scene.
+    void aim_cameras() {
+        glm::vec3 lower{INFINITY}, upper{-INFINITY};
+        for (size_t i = 0; i < worlds_.size(); ++i) {
+            if (loader_.scene.nodes[i].mesh < 0) continue;
+            for (const Primitive& primitive :
+                 loader_.scene.meshes[static_cast<size_t>(loader_.scene.nodes[i].mesh)].primitives)
+                for (const glm::vec3& p : primitive.positions) {
+                    const glm::vec3 at = glm::vec3(worlds_[i] * glm::vec4(p, 1));
+                    lower = glm::min(lower, at);
+                    upper = glm::max(upper, at);
+                }
+        }
+        const glm::vec3 middle = 0.5f * lower + 0.5f * upper;
+        for (Camera& camera : loader_.scene.cameras) {
+            const glm::vec3 forward = camera.look - camera.eye;
+            const float distance = glm::dot(middle - camera.eye, forward);
+            if (std::isfinite(distance) && distance > 1e-3f) camera.look = camera.eye + forward * distance;
+        }
+    }
+
+    GltfLoader& loader_;
+    const tinygltf::Model& model_;
+    std::vector<bool> visited_, read_;
+    std::vector<glm::mat4> worlds_;
+};
+
+}  // namespace
+
+void GltfLoader::read_nodes() {
+    NodeReader(*this).read();
+}
+
+}  // namespace peelray

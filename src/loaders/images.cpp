@@ -1,0 +1,87 @@
+#include "loaders/images.h"
+
+#include <array>
+#include <climits>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "base/error.h"
+
+// The decoder is compiled into this file alone: no other module sees stb's names.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_NO_PSD
+#define STBI_NO_PIC
+#define STBI_NO_PNM
+#define STBI_MAX_DIMENSIONS 16384
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace peelray {
+
+namespace {
+
+[[noreturn]] void fail_image(const std::string& where, size_t size) {
+    const char* reason = stbi_failure_reason();
+    fail("{}: {} bytes that are no PNG or JPEG image ({}); repair or re-export the image", where, size,
+         reason ? reason : "unknown");
+}
+
+/// stb_image fills the missing part of a cut-off JPEG with grey; a whole one ends with EOI (FF D9) after its last SOS
+/// (FF DA).
+bool is_truncated_jpeg(std::span<const uint8_t> bytes) {
+    if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
+    for (size_t i = bytes.size() - 1; i > 1; --i)
+        if (bytes[i - 1] == 0xFF && (bytes[i] == 0xD9 || bytes[i] == 0xDA)) return bytes[i] == 0xDA;
+    return true;
+}
+
+}  // namespace
+
+void check_image(std::span<const uint8_t> bytes, const std::string& where) {
+    int width = 0, height = 0, channels = 0;
+    if (bytes.empty()) fail("{}: the image is empty", where);
+    if (bytes.size() > INT_MAX) fail("{}: the image has {} bytes, more than 2 GiB", where, bytes.size());
+    if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
+        fail_image(where, bytes.size());
+    if (width <= 0 || height <= 0 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
+        fail("{}: the image says it has {}x{} pixels; at most {} on a side are read", where, width, height,
+             STBI_MAX_DIMENSIONS);
+}
+
+Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
+    check_image(bytes, where);
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
+        &stbi_image_free);
+    if (!pixels) fail_image(where, bytes.size());
+    if (is_truncated_jpeg(bytes))
+        fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
+    Texture texture;
+    texture.width = static_cast<uint32_t>(width);
+    texture.height = static_cast<uint32_t>(height);
+    texture.texels.resize(size_t(texture.width) * texture.height);
+    std::memcpy(texture.texels.data(), pixels.get(), texture.texels.size() * 4);
+    return texture;
+}
+
+glm::vec4 mean_texel(const Texture& texture, bool srgb) {
+    std::array<double, 256> decoded;
+    for (int i = 0; i < 256; ++i) {
+        const double c = i / 255.0;
+        decoded[i] = !srgb ? c : c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    }
+    glm::dvec4 sum{0};
+    for (const uint32_t t : texture.texels)
+        sum += glm::dvec4(decoded[t & 255], decoded[t >> 8 & 255], decoded[t >> 16 & 255], (t >> 24) / 255.0);
+    return glm::vec4(sum / std::max(1.0, double(texture.texels.size())));
+}
+
+}  // namespace peelray

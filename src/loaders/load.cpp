@@ -1,0 +1,51 @@
+#include "loaders/load.h"
+#include "builtin/builtin.h"
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <new>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "loaders/assimp_loader.h"
+#include "loaders/files.h"
+#include "loaders/gltf.h"
+
+namespace peelray {
+
+namespace {
+
+Scene load_file(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
+    if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off")
+        return load_assimp(path, extension);
+    fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
+         printable(path.string(), 1000), printable(extension, 20));
+}
+
+bool has_triangles(const Scene& scene) {
+    return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
+        if (node.mesh < 0) return false;
+        const std::vector<Primitive>& primitives = scene.meshes[static_cast<size_t>(node.mesh)].primitives;
+        return std::any_of(primitives.begin(), primitives.end(),
+                           [](const Primitive& p) { return !p.triangles.empty(); });
+    });
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& name) {
+    constexpr std::string_view prefix = "builtin:";
+    if (name.starts_with(prefix)) return make_builtin(std::string_view(name).substr(prefix.size()));
+    const std::filesystem::path path(name);
+    try {
+        Scene scene = load_file(path);
+        if (!has_triangles(scene)) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
+        return scene;
+    } catch (const std::bad_alloc&) {
+        fail("{}: out of memory while reading the scene; use a smaller one", printable(name, 1000));
+    }
+}
+
+}  // namespace peelray

@@ -1,0 +1,199 @@
+// glTF 2.0, section 3.11 (animations) and appendix C (interpolation).
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "motion/animation.h"
+#include "motion/motion.h"
+#include "scene/transform.h"
+
+namespace peelray {
+namespace {
+
+using Path = AnimationChannel::Path;
+using Interpolation = AnimationChannel::Interpolation;
+
+glm::quat quaternion(const float* v) {
+    return {v[3], v[0], v[1], v[2]};
+}
+
+/// Between two rotations along the shorter way.
+void slerp(const float* from, const float* to, float share, std::vector<float>& out) {
+    const glm::quat q = glm::slerp(quaternion(from), quaternion(to), share);
+    out = {q.x, q.y, q.z, q.w};
+}
+
+void make_unit(std::vector<float>& rotation) {
+    double length2 = 0;
+    for (const float v : rotation) length2 += double(v) * v;
+    const double length = std::sqrt(length2);
+    if (!(length > 1e-12) || !std::isfinite(length)) {
+        rotation = {0, 0, 0, 1};
+        return;
+    }
+    for (float& v : rotation) v = float(v / length);
+}
+
+void apply(const AnimationChannel& channel, float time, Scene& scene, std::vector<Placement>& placements) {
+    const std::vector<float> v = channel.at(time);
+    Placement& placement = placements[size_t(channel.node)];
+    switch (channel.path) {
+        case Path::translation:
+            placement.translation = {v[0], v[1], v[2]};
+            break;
+        case Path::rotation:
+            placement.rotation = quaternion(v.data());
+            break;
+        case Path::scale:
+            placement.scale = {v[0], v[1], v[2]};
+            break;
+        case Path::weights:
+            scene.nodes[size_t(channel.node)].weights = v;
+            break;
+    }
+}
+
+/// Cameras and lights go where their nodes went.
+void carry_along(Scene& scene) {
+    const std::vector<glm::mat4> worlds = world_matrices(scene);
+    for (size_t i = 0; i < scene.nodes.size(); i++) {
+        const Node& node = scene.nodes[i];
+        const Pose pose(worlds[i]);
+        if (node.camera >= 0) {
+            Camera& camera = scene.cameras[size_t(node.camera)];
+            // Taken once: from moment to moment it would drift by a rounding.
+            if (camera.look_distance == 0) camera.look_distance = glm::length(camera.look - camera.eye);
+            camera.eye = pose.at;
+            camera.look = pose.at + pose.ahead * camera.look_distance;
+            camera.up = pose.up;
+        }
+        if (node.light >= 0) {
+            Light& light = scene.lights[size_t(node.light)];
+            light.position = pose.at;
+            light.direction = pose.ahead;
+        }
+    }
+}
+
+/// Is the animation that makes go on what is generated among these?
+bool generates(const Scene& scene, const std::vector<const Animation*>& animations) {
+    return std::any_of(animations.begin(), animations.end(), [&](const Animation* animation) {
+        return animation - scene.animations.data() == scene.generated.animation;
+    });
+}
+
+/// Does the channel ever change what it sets? Exporters write many that do not.
+bool varies(const AnimationChannel& channel) {
+    const bool cubic = channel.interpolation == Interpolation::cubic;
+    const size_t width = channel.width, stride = width * (cubic ? 3 : 1);
+    for (size_t i = 0; i < channel.values.size(); i++) {
+        const bool tangent = cubic && i % stride / width != 1;
+        if (channel.values[i] != (tangent ? 0 : channel.values[(cubic ? width : 0) + i % width])) return true;
+    }
+    return false;
+}
+
+void pose(Scene& scene, const std::vector<const Animation*>& animations, double time) {
+    std::vector<Placement> placements;
+    for (Node& node : scene.nodes) {
+        placements.push_back(node.rest);
+        node.weights = node.rest_weights;
+    }
+    for (const Animation* animation : animations) {
+        const double past =
+            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
+        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), scene, placements);
+    }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
+    scene.generated.time = generates(scene, animations) ? time : 0;
+    carry_along(scene);
+}
+
+}  // namespace
+
+std::vector<float> AnimationChannel::at(float time) const {
+    const bool cubic = interpolation == Interpolation::cubic;
+    const size_t stride = width * (cubic ? 3 : 1);
+    const auto value = [&](size_t key) { return &values[key * stride + (cubic ? width : 0)]; };
+    // The last key that is not later than the time.
+    const size_t next = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+    const size_t key = next == 0 ? 0 : next - 1;
+    std::vector<float> out(value(key), value(key) + width);
+    if (next > 0 && next < times.size() && interpolation != Interpolation::step) {
+        const float step = times[next] - times[key], s = (time - times[key]) / step;
+        const float *a = value(key), *b = value(next);
+        if (cubic) {
+            // Hermite's basis; tangents are per second.
+            const float s2 = s * s, s3 = s2 * s;
+            const float *leaving = a + width, *arriving = b - width;
+            for (uint32_t i = 0; i < width; i++)
+                out[i] = (2 * s3 - 3 * s2 + 1) * a[i] + step * (s3 - 2 * s2 + s) * leaving[i] +
+                         (3 * s2 - 2 * s3) * b[i] + step * (s3 - s2) * arriving[i];
+        } else if (path == Path::rotation) {
+            slerp(a, b, s, out);
+        } else {
+            for (uint32_t i = 0; i < width; i++) out[i] = a[i] + s * (b[i] - a[i]);
+        }
+    }
+    if (path == Path::rotation) make_unit(out);
+    return out;
+}
+
+std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which) {
+    const std::vector<Animation>& list = scene.animations;
+    if (list.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
+    if (which == "all") {
+        std::vector<const Animation*> all;
+        for (const Animation& animation : list) all.push_back(&animation);
+        return all;
+    }
+    for (size_t i = 0; i < list.size(); i++)
+        if (list[i].name == which) return {&list[i]};
+    for (size_t i = 0; i < list.size(); i++)
+        if (std::to_string(i) == which) return {&list[i]};
+    std::string names;
+    for (size_t i = 0; i < list.size(); i++)
+        names += fmt::format("{}{}: {}", i ? ", " : "", i, list[i].name.empty() ? "(no name)" : list[i].name);
+    fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
+}
+
+void complete_targets(Scene& scene) {
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives)
+            if (const auto make = std::exchange(primitive.make_targets, nullptr)) primitive.targets = make(primitive);
+}
+
+void animate(Scene& scene, const std::string& which, double time) {
+    complete_targets(scene);
+    pose(scene, find_animations(scene, which), time);
+}
+
+void stand_at_rest(Scene& scene) {
+    pose(scene, {}, 0);
+}
+
+Motion motion_of(const Scene& scene, const std::string& which) {
+    const std::vector<bool> none(scene.nodes.size(), false);
+    Motion motion{none, none, none};
+    if (which.empty()) return motion;
+    const std::vector<const Animation*> chosen = find_animations(scene, which);
+    for (const Animation* animation : chosen)
+        for (const AnimationChannel& channel : animation->channels) {
+            if (!varies(channel)) continue;
+            const auto node = size_t(channel.node);
+            (channel.path == Path::weights ? motion.morphs : motion.moves)[node] = true;
+            if (channel.path == Path::scale) motion.scales[node] = true;
+        }
+    motion.generates = generates(scene, chosen);
+    if (!motion.generates) return motion;
+    for (const Water& water : scene.generated.waters)
+        for (const Water::Float& f : water.floats) motion.moves[size_t(f.node)] = true;
+    for (const Swarm& swarm : scene.generated.swarms)
+        for (const int node : swarm.nodes) motion.moves[size_t(node)] = true;
+    return motion;
+}
+
+}  // namespace peelray
