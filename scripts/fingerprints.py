@@ -6,7 +6,8 @@
 
 A change that should change no picture is made between the two runs of the first form, on one device. Every built-in scene
 is drawn by every tracer, and by every builder and traversal of the cube; rays from a file go through every hit test. Times,
-memory and the commit are left out of the statistics, for they differ from run to run.
+memory, the commit and what rays cost (lists are in no fixed order) are left out of the statistics, for they differ from
+run to run.
 """
 import argparse
 import concurrent.futures
@@ -24,7 +25,7 @@ SCENES = ["teapots", "glass", "tree", "leaves", "room", "walker", "blob:8000", "
 BUILDERS = ["compute", "abuffer", "peel"]
 TRAVERSALS = ["voxel", "two-level", "mipmap"]
 HITS = ["exact", "planar", "tolerance"]
-VARYING = re.compile(r"(ms|seconds|second|bytes|commit|memory|times|passes)$")
+VARYING = re.compile(r"(ms|seconds|second|bytes|commit|memory|times|passes|counters)$")
 
 
 def cases():
@@ -119,7 +120,7 @@ def run_case(program, name, arguments, rays):
         if name.startswith("info"):
             found["text"] = done.stdout
         for path in sorted(Path(folder).rglob("*")):
-            if path.suffix == ".html" or path.name.endswith(".manifest.json"):
+            if path.suffix == ".html" or path.name.endswith(".manifest.json") or re.search("counters|cost_", path.name):
                 found["files"][path.name] = "there"
             elif path.suffix == ".json":
                 found["files"][path.name] = without_varying(json.loads(path.read_text()))
