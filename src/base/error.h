@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "base/setting.h"
 
 namespace peelray {
 
@@ -13,10 +16,25 @@ namespace peelray {
 /// The programs print it after "peelray: " and exit with status 1.
 class Error : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    /// `text`: settings in it are written as a Setting is formatted.
+    explicit Error(const std::string& text);
+
+    /// The settings at fault, or that could be chosen otherwise, in the order in which the line names them; each once.
+    const std::vector<std::string>& settings() const { return settings_; }
+
+    /// The line with `prefix` before the name of each setting: "--" makes them the flags of the command line. In
+    /// what() the names stand alone.
+    std::string line(std::string_view prefix) const;
+
+    /// The line with its settings still marked, for an Error that tells more.
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+    std::vector<std::string> settings_;
 };
 
-/// Throws Error with a formatted line.
+/// Throws Error with a formatted line. Arguments that are a Setting are those at fault.
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
     throw Error(fmt::format(format, std::forward<Args>(args)...));

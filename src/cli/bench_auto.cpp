@@ -173,7 +173,7 @@ void AutoCheck::measure(const std::string& name, Progress& bar) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        row.left_out = error.what();
+        row.left_out = error.line("--");
         add(row, bar);
     }
     device_.check_validation();

@@ -286,7 +286,7 @@ void PaperBench::measure(const PaperScene& paper, Progress& bar) {
     try {
         scene.emplace(paper, a_, file);
     } catch (const Error& error) {
-        unusable = error.what();
+        unusable = error.line("--");
     }
     for (const Combination& c : combinations_)
         for (const auto& ldc : a_.ldc) {
@@ -306,7 +306,7 @@ void PaperBench::measure(const PaperScene& paper, Progress& bar) {
                 } catch (const Interrupted&) {
                     throw;
                 } catch (const Error& error) {
-                    row.left_out = error.what();
+                    row.left_out = error.line("--");
                     scene->recover();
                 }
             }

@@ -152,7 +152,7 @@ void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        row.frame_left_out = error.what();
+        row.frame_left_out = error.line("--");
         renderer_.reset();
     }
 }
@@ -278,7 +278,7 @@ std::string reason_against(const std::function<void()>& work) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        return error.what();
+        return error.line("--");
     } catch (const std::bad_alloc&) {
         return "out of memory: the scene or its rays are too large for this machine";
     }

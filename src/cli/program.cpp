@@ -150,7 +150,7 @@ int run_program(int argc, const char* const* argv) {
             fail("'view' is not built into this version: there are render, compare, trace, bench, info and devices");
         if (std::fflush(stdout) != 0) fail("cannot write to the standard output: {}", std::strerror(errno));
     } catch (const Error& error) {
-        fmt::print(stderr, "peelray: {}\n", one_line(error.what()));
+        fmt::print(stderr, "peelray: {}\n", one_line(error.line("--")));
         return 1;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "peelray: out of memory: the scene or picture is too large for this machine\n");

@@ -75,7 +75,7 @@ MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progres
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        fail("frame {}: {}", frame, error.what());
+        fail("frame {}: {}", frame, error.text());
     }
 }
 

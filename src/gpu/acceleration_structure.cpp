@@ -89,8 +89,8 @@ StructureSizes sizes_of(Device& device, const StructureSource& source, VkBuildAc
     const bool top = source.type() == VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
     const uint64_t most = top ? limits.most_instances : limits.most_triangles;
     if (primitives > most)
-        fail("{} {} are more than the {} that the device '{}' traces: use --tracer ldc", primitives,
-             top ? "instances" : "triangles of one object", most, device.info().name);
+        fail("{} {} are more than the {} that the device '{}' traces: use {} ldc", primitives,
+             top ? "instances" : "triangles of one object", most, device.info().name, setting::tracer);
     const auto info = source.info(flags);
     VkAccelerationStructureBuildSizesInfoKHR sizes{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
     device.vk.vkGetAccelerationStructureBuildSizesKHR(device.handle, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,

@@ -11,10 +11,10 @@ Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
     : device_(&device), name_(std::move(name)), bytes_(std::max<uint64_t>(bytes, 16)) {
     if (where == Where::device && bytes_ > device.limits().maxStorageBufferRange)
         fail(
-            "{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller --ldc or --size, "
-            "or another --device",
+            "{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller {} or {}, or "
+            "another {}",
             name_, double(bytes_) / (1 << 20), device.info().name,
-            double(device.limits().maxStorageBufferRange) / (1 << 20));
+            double(device.limits().maxStorageBufferRange) / (1 << 20), setting::ldc, setting::size, setting::device);
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes_;
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;

@@ -261,8 +261,8 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     check_params(pass, bytes);
     const auto& most = device_.limits().maxComputeWorkGroupCount;
     if (!arguments && (groups.x > most[0] || groups.y > most[1] || groups.z > most[2]))
-        fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller --size or --ldc",
-             pass.name(), groups.x, groups.y, groups.z, device_.info().name);
+        fail("the pass {} needs {}x{}x{} workgroups, more than the device '{}' runs: use a smaller {} or {}",
+             pass.name(), groups.x, groups.y, groups.z, device_.info().name, setting::size, setting::ldc);
     const VkDescriptorSet set = prepare(pass, bindings, arguments, kCompute);
     start(pass, VK_PIPELINE_BIND_POINT_COMPUTE, set, params, bytes);
     if (arguments)

@@ -81,12 +81,11 @@ DeviceFeatures optional_features(VkPhysicalDevice device, VkPhysicalDeviceFeatur
 void check_vulkan(VkResult result, std::string_view what) {
     if (result == VK_SUCCESS) return;
     if (result == VK_ERROR_DEVICE_LOST)
-        fail(
-            "the Vulkan device was lost while {}: the driver gave up; try a smaller --size or --ldc, or another "
-            "--device",
-            what);
+        fail("the Vulkan device was lost while {}: the driver gave up; try a smaller {} or {}, or another {}", what,
+             setting::size, setting::ldc, setting::device);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        fail("out of memory while {}: try a smaller --size or --ldc, or another --device", what);
+        fail("out of memory while {}: try a smaller {} or {}, or another {}", what, setting::size, setting::ldc,
+             setting::device);
     fail("Vulkan error {} while {}", int(result), what);
 }
 
@@ -200,9 +199,9 @@ const RayPass& Device::ray_pass(std::string_view shader, const RaySetup& setup) 
 void Device::check_ray_tracing() const {
     if (!features.ray_tracing)
         fail(
-            "--tracer khr needs Vulkan's ray tracing, but the device '{}' lacks {}: use --tracer ldc, which does "
-            "without, update its driver, or choose another --device",
-            info_.name, ray_tracing_lacking_);
+            "{} khr needs Vulkan's ray tracing, but the device '{}' lacks {}: use {} ldc, which does without, update "
+            "its driver, or choose another {}",
+            setting::tracer, info_.name, ray_tracing_lacking_, setting::tracer, setting::device);
 }
 
 void Device::check_validation() const {

@@ -21,7 +21,7 @@ struct RaySetup;
 
 /// One physical device, as `peelray devices` lists it.
 struct DeviceInfo {
-    uint32_t index;          ///< position in this list: what --device takes
+    uint32_t index;          ///< position in this list: as DeviceOptions::select takes it
     std::string name, kind;  ///< kind: "discrete", "integrated", "virtual", "CPU" or "other"
     std::string driver, api_version;
     uint64_t memory;      ///< bytes of the largest device-local heap

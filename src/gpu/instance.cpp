@@ -105,9 +105,8 @@ VkInstance create_instance(bool validate, const VkDebugUtilsMessengerCreateInfoE
     load_vulkan();
     const char* layer = "VK_LAYER_KHRONOS_validation";
     if (validate && !layer_available(layer))
-        fail(
-            "--validate needs the Vulkan validation layers: install them (Debian/Ubuntu: package "
-            "vulkan-validationlayers)");
+        fail("{} needs the Vulkan validation layers: install them (Debian/Ubuntu: package vulkan-validationlayers)",
+             setting::validate);
     debug_utils = instance_extension_available(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
 
@@ -171,9 +170,9 @@ PhysicalDevice choose_device(VkInstance instance, const std::string& select) {
     if (!chosen) chosen = &devices.front();
     if (!chosen->info.usable)
         fail(
-            "the Vulkan device '{}' lacks {}, which Peelray needs: update its driver or choose another --device (there "
-            "is {})",
-            chosen->info.name, chosen->info.lacking, names);
+            "the Vulkan device '{}' lacks {}, which Peelray needs: update its driver or choose another {} (there is "
+            "{})",
+            chosen->info.name, chosen->info.lacking, setting::device, names);
     return *chosen;
 }
 

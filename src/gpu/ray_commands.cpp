@@ -17,8 +17,8 @@ void Commands::record_rays(const RayPass& pass, std::span<const Binding> binding
                            uint32_t rays, const Buffer* arguments, uint64_t offset) {
     check_params(pass, bytes);
     if (rays > device_.ray_tracing_limits().most_rays)
-        fail("the pass {} starts {} rays, more than the {} that the device '{}' takes: use a smaller --size",
-             pass.name(), rays, device_.ray_tracing_limits().most_rays, device_.info().name);
+        fail("the pass {} starts {} rays, more than the {} that the device '{}' takes: use a smaller {}", pass.name(),
+             rays, device_.ray_tracing_limits().most_rays, device_.info().name, setting::size);
     const VkDescriptorSet set = prepare(pass, bindings, arguments, kRays);
     start(pass, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, set, params, bytes);
     const VkStridedDeviceAddressRegionKHR none{};

@@ -136,7 +136,7 @@ class Reader {
 
 }  // namespace
 
-// EXPOSURE lines are ignored, as other renderers do: --exposure is the user's.
+// EXPOSURE lines are ignored, as other renderers do: the exposure is the user's.
 Image decode_radiance(const std::filesystem::path& path, std::string_view bytes) {
     return Reader(path, bytes).read();
 }

@@ -16,10 +16,8 @@ AbufferRasterizer::AbufferRasterizer(Device& device, const Cubes& cubes)
 void AbufferRasterizer::guess(BuildState& state, const BuildSize& size) {
     state.params.viewport = viewport_side(side_);
     if (size.triangles * routed_.vertices > ~0u)
-        fail(
-            "{} triangles are more than --builder abuffer can draw with --routing draws: use --routing geometry, or "
-            "--builder compute",
-            size.triangles);
+        fail("{} triangles are more than {} abuffer can draw with {} draws: use {} geometry, or {} compute",
+             size.triangles, setting::builder, setting::routing, setting::routing, setting::builder);
 }
 
 void AbufferRasterizer::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {

@@ -119,20 +119,21 @@ bool CubeBuilder::finish(Commands& commands) {
     std::memcpy(&counts_, state_->readback.mapped(), sizeof counts_);
     if (counts_.wrapped & LDC_FAR_TOLERANCE)
         fail(
-            "the tolerance is more than {} voxels of a cube, which --traversal voxel cannot hold: choose a smaller "
-            "--tolerance or --ldc, or --traversal two-level",
-            LDC_FARTHEST_BY_VOXEL);
+            "the tolerance is more than {} voxels of a cube, which {} voxel cannot hold: choose a smaller {} or {}, or "
+            "{} two-level",
+            LDC_FARTHEST_BY_VOXEL, setting::traversal, setting::tolerance, setting::ldc, setting::traversal);
     if (counts_.wrapped)
-        fail("the cubes would hold more than 2^32 {}: use a smaller --ldc",
-             counts_.wrapped & LDC_WRAPPED_CELLS ? "pixels or cells" : "samples");
+        fail("the cubes would hold more than 2^32 {}: use a smaller {}",
+             counts_.wrapped & LDC_WRAPPED_CELLS ? "pixels or cells" : "samples", setting::ldc);
     bool grown = rasterizer_->grow(*state_, counts_);
     grown |= order_->grow(*state_, counts_);
     const DeviceInfo& device = state_->device.info();
     if (!grown && counts_.longest > kLongestListOnCpu && device.kind == "CPU")
         fail(
             "{} triangles crowd into one {}, more than rays can walk through on the software device '{}' ({}): use a "
-            "larger --ldc, or a GPU",
-            counts_.longest, cubes_.layout().by_pixel() ? "pixel" : "voxel", device.name, kLongestListOnCpu);
+            "larger {}, or a GPU",
+            counts_.longest, cubes_.layout().by_pixel() ? "pixel" : "voxel", device.name, kLongestListOnCpu,
+            setting::ldc);
     if (!grown) {
         if (!settled_) {
             rasterizer_->settle(*state_, counts_);

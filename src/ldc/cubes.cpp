@@ -65,7 +65,7 @@ const char* name_of(Batch batch) {
 
 uint32_t round_resolution(uint32_t resolution) {
     if (resolution < 16 || resolution > 2048)
-        fail("the LDI resolution {} is out of range: choose 16 to 2048 (--ldc)", resolution);
+        fail("the LDI resolution {} is out of range: choose 16 to 2048 ({})", resolution, setting::ldc);
     return (resolution + 15) / 16 * 16;
 }
 
@@ -90,13 +90,14 @@ uint64_t most_exact_triangles(const Device& device) {
 void check_captures(BuilderKind builder, Sampling sampling) {
     if (builder == BuilderKind::peel && sampling == Sampling::conservative)
         fail(
-            "--builder peel captures pixel centres, not all that a triangle touches: use --hit planar or tolerance, or "
-            "--builder abuffer or compute");
+            "{} peel captures pixel centres, not all that a triangle touches: use {} planar or tolerance, or {} "
+            "abuffer or compute",
+            setting::builder, setting::hit, setting::builder);
 }
 
 void check_block(const glm::uvec2& block) {
     if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
-        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side (--block)", block.x, block.y);
+        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side ({})", block.x, block.y, setting::block);
 }
 
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution) {
@@ -130,19 +131,19 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
 void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& kept) {
     // Entries are 31-bit numbers of nodes and samples.
     if (size.cells >= 1ull << 32)
-        fail("the cubes would hold {} pixels or cells, more than their tables can number: use a smaller --ldc",
-             size.cells);
+        fail("the cubes would hold {} pixels or cells, more than their tables can number: use a smaller {}", size.cells,
+             setting::ldc);
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
-        fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller --ldc",
-             size.nodes, size.samples);
+        fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller {}",
+             size.nodes, size.samples, setting::ldc);
     const MemoryPart part(device_, "cubes");
     if (has_patches()) {
         const uint64_t triangles = uint64_t(bodies_.back().first_triangle) + bodies_.back().triangles;
         if (triangles > most_exact_triangles(device_))
             fail(
-                "{} triangles are more than the device '{}' holds for exact hits by voxel ({}): use --hit planar, or "
-                "--traversal two-level",
-                triangles, device_.info().name, most_exact_triangles(device_));
+                "{} triangles are more than the device '{}' holds for exact hits by voxel ({}): use {} planar, or {} "
+                "two-level",
+                triangles, device_.info().name, most_exact_triangles(device_), setting::hit, setting::traversal);
         if (!corners) corners = Buffer(device_, "the cubes' corners of triangles", triangles * sizeof(LdcCorners));
         grow(device_, commands, patches, "the cubes' patches", size.samples * 16, kept.samples * 16);
     } else {

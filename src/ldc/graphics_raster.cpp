@@ -13,27 +13,27 @@ void check_builder(const DeviceFeatures& features, const VkPhysicalDeviceLimits&
     const char* name = layout.builder == BuilderKind::peel ? "peel" : "abuffer";
     check_captures(layout.builder, sampling);
     if (!features.fragment_stores)
-        fail(
-            "the device '{}' cannot write buffers in fragment shaders, which --builder {} needs: use --builder compute",
-            device, name);
+        fail("the device '{}' cannot write buffers in fragment shaders, which {} {} needs: use {} compute", device,
+             setting::builder, name, setting::builder);
     if (layout.routing == Routing::geometry && !features.geometry_shader)
-        fail("the device '{}' has no geometry shader: use --routing draws, or --builder compute", device);
+        fail("the device '{}' has no geometry shader: use {} draws, or {} compute", device, setting::routing,
+             setting::builder);
     if (layout.builder == BuilderKind::peel && layout.routing == Routing::draws && !features.first_instance)
         fail(
-            "the device '{}' lacks drawIndirectFirstInstance, which peeling with --routing draws needs: use --routing "
-            "geometry, or --builder abuffer or compute",
-            device);
+            "the device '{}' lacks drawIndirectFirstInstance, which peeling with {} draws needs: use {} geometry, or "
+            "{} abuffer or compute",
+            device, setting::routing, setting::routing, setting::builder);
     const uint32_t side = viewport_side(resolution);
     const uint32_t most = std::min({limits.maxFramebufferWidth, limits.maxFramebufferHeight,
                                     limits.maxViewportDimensions[0], limits.maxViewportDimensions[1],
                                     layout.builder == BuilderKind::peel ? limits.maxImageDimension2D : ~0u});
     if (side > most)
         fail(
-            "the device '{}' draws into at most {} pixels a side, too few for LDIs of {} pixels: use a smaller --ldc, "
-            "or --builder compute",
-            device, most, resolution);
+            "the device '{}' draws into at most {} pixels a side, too few for LDIs of {} pixels: use a smaller {}, or "
+            "{} compute",
+            device, most, resolution, setting::ldc, setting::builder);
     if (layout.builder == BuilderKind::peel && std::min(limits.maxImageArrayLayers, limits.maxFramebufferLayers) < 3)
-        fail("the device '{}' has no targets of three layers: use --builder abuffer or compute", device);
+        fail("the device '{}' has no targets of three layers: use {} abuffer or compute", device, setting::builder);
 }
 
 RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Sampling sampling, bool layered) {

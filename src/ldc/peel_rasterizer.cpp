@@ -156,10 +156,8 @@ bool PeelRasterizer::grow(BuildState& state, const LdcCounters& counts) {
     bool grown = false;
     for (size_t i = 0; i < layers.size(); i++) {
         if (layers[i] > kMostPasses)
-            fail(
-                "{} layers lie over one pixel, more than --builder peel makes passes ({}): use --builder abuffer or "
-                "compute",
-                layers[i], kMostPasses);
+            fail("{} layers lie over one pixel, more than {} peel makes passes ({}): use {} abuffer or compute",
+                 layers[i], setting::builder, kMostPasses, setting::builder);
         grown |= layers[i] > passes_[i];
         // Fewer at once, more only with room for them.
         passes_[i] = layers[i] > passes_[i] ? layers[i] + kReserve : std::min(passes_[i], layers[i] + kReserve);

@@ -11,8 +11,9 @@ StreamRasterizer::StreamRasterizer(Device& device, const Cubes& cubes) {
     if (layout.builder != BuilderKind::abuffer || layout.routing != Routing::geometry || !layout.by_pixel() ||
         cubes.sampling() == Sampling::conservative)
         fail(
-            "drawn streams are captured by --builder abuffer with --routing geometry, for --traversal two-level or "
-            "mipmap and --hit planar or tolerance");
+            "drawn streams are captured by {} abuffer with {} geometry, for {} two-level or mipmap and {} planar or "
+            "tolerance",
+            setting::builder, setting::routing, setting::traversal, setting::hit);
     for (const CubeBody& body : cubes.bodies()) side_ = std::max(side_, round_resolution(body.resolution));
     check_builder(device.features, device.limits(), device.info().name, layout, cubes.sampling(), side_);
 }
@@ -29,8 +30,8 @@ void StreamRasterizer::allocate(Commands&, BuildState& state) {
 void StreamRasterizer::record(Commands& commands, const BuildState& state, const TriangleBuffers&) {
     for (const DrawnStream& stream : state.streams) {
         if (stream.patch_points && !state.device.features.tessellation_shader)
-            fail("the device '{}' has no tessellation shaders, which the stream {} needs: use another --device",
-                 state.device.info().name, stream.front);
+            fail("the device '{}' has no tessellation shaders, which the stream {} needs: use another {}",
+                 state.device.info().name, stream.front, setting::device);
         RasterSetup setup;
         setup.front = stream.front;
         setup.geometry = "ldc_stream";

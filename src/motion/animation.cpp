@@ -144,7 +144,8 @@ std::vector<float> AnimationChannel::at(float time) const {
 
 std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which) {
     const std::vector<Animation>& list = scene.animations;
-    if (list.empty()) fail("{}: the scene has no animation: leave --time and --animation out", scene.name);
+    if (list.empty())
+        fail("{}: the scene has no animation: leave {} and {} out", scene.name, setting::time, setting::animation);
     if (which == "all") {
         std::vector<const Animation*> all;
         for (const Animation& animation : list) all.push_back(&animation);
@@ -157,7 +158,7 @@ std::vector<const Animation*> find_animations(const Scene& scene, const std::str
     std::string names;
     for (size_t i = 0; i < list.size(); i++)
         names += fmt::format("{}{}: {}", i ? ", " : "", i, list[i].name.empty() ? "(no name)" : list[i].name);
-    fail("{}: the scene has no animation '{}': there is {} (--animation)", scene.name, which, names);
+    fail("{}: the scene has no animation '{}': there is {} ({})", scene.name, which, names, setting::animation);
 }
 
 void complete_targets(Scene& scene) {

@@ -32,9 +32,10 @@ struct Tiles {
 
 void check_settings(const PictureSettings& s) {
     if (s.width < 1 || s.height < 1 || s.width > 65536 || s.height > 65536)
-        fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 (--size)", s.width, s.height);
-    if (s.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", s.bounces);
-    if (s.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+        fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 ({})", s.width, s.height,
+             setting::size);
+    if (s.bounces > 16) fail("{} bounces are too many: choose 0 to 16 ({})", s.bounces, setting::bounces);
+    if (s.spp < 1) fail("a picture needs at least one sample per pixel ({})", setting::spp);
 }
 
 Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x, uint32_t y, const glm::vec2& sample) {

@@ -1,4 +1,4 @@
-// Ground truth: the frame of docs/frame.md on the CPU, in double precision (`--tracer reference`).
+// Ground truth: the frame of docs/frame.md on the CPU, in double precision.
 #pragma once
 
 #include <functional>

@@ -43,9 +43,9 @@ bool ComputeView::finish(const PathQueues& queues) {
     const uint64_t most = device_.limits().maxStorageBufferRange / kBlockBytes;
     if (needed > most)
         fail(
-            "large triangles cover {} blocks of the picture, more than the device '{}' binds: choose a smaller --size, "
-            "or --visibility raster",
-            needed, device_.info().name);
+            "large triangles cover {} blocks of the picture, more than the device '{}' binds: choose a smaller {}, or "
+            "{} raster",
+            needed, device_.info().name, setting::size, setting::visibility);
     capacity_ = uint32_t(std::min<uint64_t>(most, needed + needed / 4));
     return false;
 }

@@ -1,4 +1,4 @@
-// The baseline, --tracer cubemap: what engines without ray tracing do. The surroundings of each object that mirrors or
+// The baseline, Tracer::cubemap: what engines without ray tracing do. The surroundings of each object that mirrors or
 // lets light through are rendered from the middle of its box into a cube map, its probe, which its surfaces look up by
 // direction alone. docs/frame.md tells what that gets wrong.
 #pragma once

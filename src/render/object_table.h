@@ -1,4 +1,4 @@
-// The scene's objects as the baseline (--tracer cubemap) sees them: boxes, and which of them mirror or let light
+// The scene's objects as the baseline (Tracer::cubemap) sees them: boxes, and which of them mirror or let light
 // through.
 #pragma once
 
@@ -16,7 +16,7 @@ struct ObjectSummary {
     bool transmits = false, metallic = false;  ///< some surface that is not unlit
     float smoothest = 2, roughest = 0;         ///< perceptual roughness of those surfaces; 2: all are unlit
 
-    /// Whether --tracer ldc would send rays from it (scatter.comp): then it deserves a probe.
+    /// Whether Tracer::ldc would send rays from it (scatter.comp): then it deserves a probe.
     bool reflects_or_refracts(const PictureSettings& settings) const;
 };
 

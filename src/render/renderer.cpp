@@ -125,23 +125,23 @@ struct Renderer::Impl {
 void Renderer::Impl::check_settings() const {
     const uint32_t largest = std::min(device.limits().maxImageDimension2D, device.limits().maxFramebufferWidth);
     if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest)
-        fail("a picture of {}x{} pixels is impossible: the device '{}' draws 1x1 to {}x{} (--size)", settings.width,
-             settings.height, device.info().name, largest, largest);
+        fail("a picture of {}x{} pixels is impossible: the device '{}' draws 1x1 to {}x{} ({})", settings.width,
+             settings.height, device.info().name, largest, largest, setting::size);
     const uint64_t bytes = uint64_t(settings.width) * settings.height * sizeof(glm::vec4);
     if (bytes > device.limits().maxStorageBufferRange)
         fail(
             "a picture of {}x{} pixels needs {:.0f} MiB at once, but the device '{}' binds at most {:.0f}: choose a "
-            "smaller --size",
+            "smaller {}",
             settings.width, settings.height, double(bytes) / (1 << 20), device.info().name,
-            double(device.limits().maxStorageBufferRange) / (1 << 20));
+            double(device.limits().maxStorageBufferRange) / (1 << 20), setting::size);
     if (settings.bounces >= QUEUE_LEVELS)
-        fail("{} bounces are too many: choose 0 to {} (--bounces)", settings.bounces, QUEUE_LEVELS - 1);
-    if (settings.spp < 1) fail("a picture needs at least one sample per pixel (--spp)");
+        fail("{} bounces are too many: choose 0 to {} ({})", settings.bounces, QUEUE_LEVELS - 1, setting::bounces);
+    if (settings.spp < 1) fail("a picture needs at least one sample per pixel ({})", setting::spp);
     if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
-        fail("the device '{}' cannot find what pixels see by compute shaders{}: use --visibility raster",
-             device.info().name,
+        fail("the device '{}' cannot find what pixels see by compute shaders{}: use {} raster", device.info().name,
              device.features.int64_atomics ? fmt::format(" among {} triangles", scene.drawn)
-                                           : ", for it lacks 64-bit atomics");
+                                           : ", for it lacks 64-bit atomics",
+             setting::visibility);
 }
 
 void Renderer::Impl::prepare_images() {
@@ -468,8 +468,8 @@ bool Renderer::Impl::finish_band(uint32_t first_row) {
         if (band_rows == 8)
             fail(
                 "eight rows of pixels need {} shadow rays, more than the {} that are traced at once: choose a smaller "
-                "--size or fewer lights",
-                queues.count(QUEUE_LIGHT), queues.most_lights());
+                "{} or fewer lights",
+                queues.count(QUEUE_LIGHT), queues.most_lights(), setting::size);
         band_rows = std::max(8u, band_rows / 16 * 8);
     }
     return false;
@@ -514,8 +514,8 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
     if (pixels * 64 > device.limits().maxStorageBufferRange)
         fail(
             "auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a "
-            "smaller --size",
-            settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name);
+            "smaller {}",
+            settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name, setting::size);
     const MemoryPart part(device, "images");
     ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
     commands.fill(queues.counters(), 0);

@@ -46,10 +46,10 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
         const float voxel = make_grid(body.lower, body.upper, resolutions[i]).voxel;
         if (!choice.layout.by_pixel() && bodies.back().tolerance > LDC_FARTHEST_BY_VOXEL * voxel)
             fail(
-                "a tolerance of {} is more than {} voxels of a cube, which --traversal voxel cannot hold: choose at "
-                "most "
-                "{:.3g} (--tolerance), a smaller --ldc, or --traversal two-level",
-                choice.tolerance, LDC_FARTHEST_BY_VOXEL, LDC_FARTHEST_BY_VOXEL * voxel * scales[i]);
+                "a tolerance of {} is more than {} voxels of a cube, which {} voxel cannot hold: choose at most {:.3g} "
+                "({}), a smaller {}, or {} two-level",
+                choice.tolerance, LDC_FARTHEST_BY_VOXEL, setting::traversal, LDC_FARTHEST_BY_VOXEL * voxel * scales[i],
+                setting::tolerance, setting::ldc, setting::traversal);
     }
     return bodies;
 }

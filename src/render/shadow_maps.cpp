@@ -93,10 +93,8 @@ void ShadowMaps::prepare(Commands& commands, const std::vector<GpuLight>& lights
         stats_.size = kSingle >> shift;
         stats_.face_size = kFace >> shift;
         if (stats_.face_size < kSmallest)
-            fail(
-                "the shadow maps of {} lights do not fit into {} MiB: leave shadow out of --effects, or use another "
-                "--tracer",
-                lights.size(), room >> 20);
+            fail("the shadow maps of {} lights do not fit into {} MiB: leave shadow out of {}, or use another {}",
+                 lights.size(), room >> 20, setting::effects, setting::tracer);
         maps_.assign(std::max<size_t>(lights.size(), 1) * 6, GpuShadowMap{});
         frames.clear();
         used_.clear();

@@ -41,12 +41,12 @@ View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };
     if (!finite(eye) || !finite(look) || !finite(glm::dvec3(camera.up)))
-        fail("the camera's position is not finite: check --eye, --look and --up");
-    if (glm::length(look) == 0) fail("the camera looks at itself: --eye and --look must differ");
+        fail("the camera's position is not finite: check {}, {} and {}", setting::eye, setting::look, setting::up);
+    if (glm::length(look) == 0) fail("the camera looks at itself: {} and {} must differ", setting::eye, setting::look);
     const glm::dvec3 forward = glm::normalize(look);
     const glm::dvec3 side = glm::cross(forward, glm::dvec3(camera.up));
     if (glm::length(side) < 1e-9 * glm::length(glm::dvec3(camera.up)) || glm::length(glm::dvec3(camera.up)) == 0)
-        fail("the camera looks along its up direction: choose another --up");
+        fail("the camera looks along its up direction: choose another {}", setting::up);
     const glm::dvec3 right = glm::normalize(side), up = glm::cross(right, forward);
 
     View view;
@@ -54,8 +54,8 @@ View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const
     view.orthographic = camera.orthographic_height > 0;
     if (!view.orthographic) {
         if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415f))
-            fail("a vertical field of view of {:.1f} degrees is impossible: choose one between 0 and 180 (--fov)",
-                 camera.vertical_fov * 57.29578f);
+            fail("a vertical field of view of {:.1f} degrees is impossible: choose one between 0 and 180 ({})",
+                 camera.vertical_fov * 57.29578f, setting::fov);
         half_height = std::tan(double(camera.vertical_fov) / 2);
     }
     view.eye = camera.eye;

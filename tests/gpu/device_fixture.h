@@ -55,7 +55,7 @@ void expect_error(Work&& work, std::initializer_list<std::string> parts) {
         work();
         ADD_FAILURE() << "no error; expected: " << *parts.begin();
     } catch (const Error& error) {
-        const std::string text = error.what();
+        const std::string text = error.line("--");
         for (const auto& part : parts)
             EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
         EXPECT_EQ(text.find('\n'), std::string::npos) << text;

@@ -42,7 +42,7 @@ void expect_error(Work&& work, const std::string& part) {
         work();
         ADD_FAILURE() << "no error; expected: " << part;
     } catch (const Error& error) {
-        const std::string text = error.what();
+        const std::string text = error.line("--");
         EXPECT_NE(text.find(part), std::string::npos) << text;
         EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     }

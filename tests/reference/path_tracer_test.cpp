@@ -101,7 +101,7 @@ TEST_F(PathTracerTest, ImpossibleSettingsNameTheOption) {
         try {
             render(stage, white, settings);
         } catch (const Error& error) {
-            return error.what();
+            return error.line("--");
         }
         return "";
     };

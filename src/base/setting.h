@@ -1,0 +1,36 @@
+// Names of settings, for errors: what below a front end says which settings are at fault, the front end how they are
+// written there.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string>
+#include <string_view>
+
+namespace peelray {
+
+/// A setting that an error names, by its name in the table of settings (src/settings).
+struct Setting {
+    std::string_view name;
+};
+
+/// Those that code below the table has reason to name.
+namespace setting {
+inline constexpr Setting animation{"animation"}, block{"block"}, bounces{"bounces"}, builder{"builder"},
+    device{"device"}, effects{"effects"}, eye{"eye"}, fov{"fov"}, hit{"hit"}, ldc{"ldc"}, look{"look"},
+    routing{"routing"}, size{"size"}, spp{"spp"}, time{"time"}, tolerance{"tolerance"}, tracer{"tracer"},
+    traversal{"traversal"}, up{"up"}, validate{"validate"}, visibility{"visibility"};
+}  // namespace setting
+
+/// Around the name of a setting in the text of an Error. A front end that prints the text replaces both.
+inline constexpr char kSettingBegin = '\x0e', kSettingEnd = '\x0f';
+
+}  // namespace peelray
+
+template <>
+struct fmt::formatter<peelray::Setting> : fmt::formatter<std::string_view> {
+    template <typename Context>
+    auto format(const peelray::Setting& setting, Context& context) const {
+        return fmt::format_to(context.out(), "{}{}{}", peelray::kSettingBegin, setting.name, peelray::kSettingEnd);
+    }
+};
