@@ -37,7 +37,7 @@ void radixRound(uint start, uint length, uint round, bool forward) {
         barrier();
         uint before = 0u, all = 0u;
         if (lane < batch)
-            // Sixteen at a time: a software device may bound the loop iterations of an invocation (docs/performance.md).
+            // Sixteen at a time: a software device may bound the loop iterations of an invocation (docs/lab_notes.md).
             for (uint j = 0u; j < batch; j += 16u) {
                 [[unroll]] for (uint k = 0u; k < 16u; k++) {
                     const bool same = j + k < batch && digits[j + k] == digit;

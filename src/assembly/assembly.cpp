@@ -328,7 +328,8 @@ double mean_edge(uint64_t triangles, double area) {
 }
 
 uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt) {
-    // A round body has 3.4 times the area of a square across it; what was measured (docs/performance.md) are such.
+    // A round body has 3.4 times the area of a square across it; the blobs that were measured are round
+    // (docs/lab_notes.md, "The choice of N").
     const double count = double(triangles), across = longest * inverse_edges / std::max(count, 1.0);
     const double spread = std::clamp(3.4 * across * across, count, 16 * count);
     const double voxels = (rebuilt ? 3.25 : 6) * std::cbrt(spread);
