@@ -9,7 +9,7 @@
 #include "cli/bench_scenes.h"
 #include "cli/paper_table.h"
 #include "cli/prepare.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 
 namespace peelray {
 namespace {
@@ -74,7 +74,7 @@ void AutoCheck::say(const std::string& text) {
 void AutoCheck::write(bool complete) const {
     if (!a_.output.empty()) {
         Json json = {{"benchmark", "auto"}};
-        json.update(device_stats(device_));
+        json.update(machine_json(machine_of(device_)));
         json["image"] = {a_.size.x, a_.size.y};
         json["repeat"] = a_.repeat;
         json["complete"] = complete;
@@ -180,13 +180,12 @@ void AutoCheck::measure(const std::string& name, Progress& bar) {
 }
 
 void AutoCheck::run() {
-    const Json device = device_stats(device_);
+    const Machine device = machine_of(device_);
     say(
         fmt::format("{}, driver {}, commit {}; {}x{} pixels, {} frames each; milliseconds of a frame, medians\n\n"
                     "| scene | triangles | cubes | auto | frame | best of all | frame | auto by best | best of its hit "
                     "test | auto by that |\n|---|---:|---|---|---:|---|---:|---:|---|---:|\n",
-                    device["device"].get<std::string>(), device["driver"].get<std::string>(),
-                    device["commit"].get<std::string>(), a_.size.x, a_.size.y, a_.repeat));
+                    device.name, device.driver, build_commit(), a_.size.x, a_.size.y, a_.repeat));
     Progress bar("measuring", double(2 * a_.scenes.size()), "rows");
     try {
         for (const std::string& scene : a_.scenes) measure(scene, bar);

@@ -8,7 +8,7 @@
 #include "cli/bench.h"
 #include "cli/paper_table.h"
 #include "cli/picture_maker.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "cli/values.h"
 #include "image/image.h"
 #include "motion/animation.h"
@@ -47,11 +47,11 @@ std::vector<const PaperScene*> choose_scenes(const BenchArguments& a) {
     return scenes;
 }
 
-/// The depth complexity of a scene's LDIs: the samples of the fullest pixel of all. The one place that knows where the
-/// stats say it; none: they count lists of voxels, which is another thing.
-std::optional<uint32_t> depth_complexity(const Json& stats) {
-    if (!stats.contains("ldc") || stats["ldc"].value("layers_of", "") != "pixel") return std::nullopt;
-    return stats["ldc"]["layers"].get<uint32_t>();
+/// The depth complexity of a scene's LDIs: the samples of the fullest pixel of all. None: the stats count lists of
+/// voxels, which is another thing.
+std::optional<uint32_t> depth_complexity(const RenderStats& stats) {
+    if (!stats.choice.layout.by_pixel()) return std::nullopt;
+    return stats.cubes.counts.longest;
 }
 
 /// Frames that come before those that are measured, beside the renderer's own first one: a GPU that was idle needs some
@@ -70,16 +70,16 @@ void summarise(const std::vector<MadePicture>& pictures, BenchRow& row) {
     std::vector<double> a, b, frame;
     std::vector<std::pair<std::string, std::vector<double>>> passes;
     for (const MadePicture& picture : pictures) {
-        for (const RenderStats::FrameTime& time : picture.times) {
+        for (const RenderStats::FrameTime& time : picture.stats.render.frames) {
             a.push_back(time.build_ms);
             b.push_back(time.frame_ms - time.build_ms);
             frame.push_back(time.frame_ms);
         }
-        for (const Json& pass : picture.stats["passes"]) {
-            const auto name = pass["name"].get<std::string>();
-            auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
-            if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
-            found->second.push_back(pass["ms"].get<double>());
+        for (const RenderStats::Time& pass : picture.stats.render.passes) {
+            auto found =
+                std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == pass.name; });
+            if (found == passes.end()) found = passes.insert(passes.end(), {pass.name, {}});
+            found->second.push_back(pass.ms);
         }
     }
     row.a = spread_of(a);
@@ -115,7 +115,7 @@ class BenchScene {
 
   private:
     std::vector<MadePicture> render(const RenderSettings& settings, const std::function<void(double)>& progress);
-    uint32_t object_pixels(const Json& cubes) const;
+    uint32_t object_pixels(const std::vector<LdcBody>& bodies) const;
     MadePicture make(RenderSettings settings, uint32_t warm_up, const Moment& moment,
                      const std::function<void(double)>& progress);
 
@@ -156,7 +156,8 @@ MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Mo
     const uint32_t frames = settings.repeat;
     if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
     MadePicture made = maker_->make("ldc", settings, moment, progress);
-    made.times.erase(made.times.begin(), made.times.end() - frames);
+    std::vector<RenderStats::FrameTime>& times = made.stats.render.frames;
+    times.erase(times.begin(), times.end() - frames);
     return made;
 }
 
@@ -179,11 +180,10 @@ std::vector<MadePicture> BenchScene::render(const RenderSettings& settings,
 }
 
 /// Pixels along the longest side of what stands on the floor, in the cube that holds most triangles.
-uint32_t BenchScene::object_pixels(const Json& cubes) const {
-    const auto most = std::max_element(cubes.begin(), cubes.end(), [](const Json& a, const Json& b) {
-        return a["triangles"].get<uint64_t>() < b["triangles"].get<uint64_t>();
-    });
-    return uint32_t(std::lround(object_side_ / (*most)["voxel_size"].get<float>()));
+uint32_t BenchScene::object_pixels(const std::vector<LdcBody>& bodies) const {
+    const auto most = std::max_element(bodies.begin(), bodies.end(),
+                                       [](const LdcBody& a, const LdcBody& b) { return a.triangles < b.triangles; });
+    return uint32_t(std::lround(object_side_ / most->grid.voxel));
 }
 
 void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progress) {
@@ -201,8 +201,8 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
     rendered_ = true;
     summarise(render(settings, progress), row);
-    row.object_pixels = object_pixels(row.stats["ldc"]["cubes"]);
-    row.layers = depth_complexity(row.stats);
+    row.object_pixels = object_pixels(row.stats->render.bodies);
+    row.layers = depth_complexity(row.stats->render);
 }
 
 void BenchScene::recover() {
@@ -219,7 +219,7 @@ class PaperBench {
         : a_(a), combinations_(choose_combinations(a)), scenes_(choose_scenes(a)) {
         const Device device({a.device.device, a.device.validate});
         check_timestamps(device);
-        device_ = device_stats(device);
+        device_ = machine_of(device);
     }
 
     void run();
@@ -234,7 +234,8 @@ class PaperBench {
     const BenchArguments& a_;
     std::vector<Combination> combinations_;
     std::vector<const PaperScene*> scenes_;
-    Json device_, rows_ = Json::array();
+    Machine device_;
+    Json rows_ = Json::array();
     std::string table_, reason_;  ///< reason_: why the first row was left out
     size_t measured_ = 0;
 };
@@ -259,7 +260,7 @@ void PaperBench::add(const BenchRow& row) {
 void PaperBench::write(bool complete) const {
     if (!a_.output.empty()) {
         Json json = {{"benchmark", "paper"}};
-        json.update(device_);
+        json.update(machine_json(device_));
         json["image"] = {a_.size.x, a_.size.y};
         json["frames"] = a_.repeat;
         json["block"] = {a_.block.x, a_.block.y};

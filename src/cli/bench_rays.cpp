@@ -14,7 +14,7 @@
 #include "cli/bench_rows.h"
 #include "cli/bench_scenes.h"
 #include "cli/prepare.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 
 namespace peelray {
 namespace {
@@ -258,7 +258,7 @@ std::vector<glm::uvec2> RayBench::series_sizes() const {
 void RayBench::write(bool complete) {
     if (!a_.output.empty()) {
         Json json = {{"benchmark", "rays"}};
-        json.update(device_stats(device_));
+        json.update(machine_json(machine_of(device_)));
         json["cpu_threads"] = std::thread::hardware_concurrency();
         json["embree"] = EmbreeContender::version();
         json["image"] = {a_.size.x, a_.size.y};
@@ -366,12 +366,10 @@ void RayBench::end(bool complete) {
 }
 
 void RayBench::run() {
-    const Json device = device_stats(device_);
-    say(fmt::format("{}, driver {}, Vulkan {}, commit {}; {} on {} CPU threads; {} runs each\n\n{}",
-                    device["device"].get<std::string>(), device["driver"].get<std::string>(),
-                    device["api_version"].get<std::string>(), device["commit"].get<std::string>(),
-                    EmbreeContender::version(), std::thread::hardware_concurrency(), a_.repeat,
-                    ray_table_head(kinds_)));
+    const Machine device = machine_of(device_);
+    say(fmt::format("{}, driver {}, Vulkan {}, commit {}; {} on {} CPU threads; {} runs each\n\n{}", device.name,
+                    device.driver, device.api_version, build_commit(), EmbreeContender::version(),
+                    std::thread::hardware_concurrency(), a_.repeat, ray_table_head(kinds_)));
     Progress bar("measuring", double(rows_in_all_), "rows");
     try {
         for (const std::string& scene : a_.scenes) measure_scene(scene, bar);

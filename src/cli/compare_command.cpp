@@ -7,7 +7,7 @@
 #include "base/interrupt.h"
 #include "base/text.h"
 #include "cli/picture_maker.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "image/report.h"
 #include "scene/encoding.h"
 
@@ -24,8 +24,8 @@ struct Entry {
     fs::path file;                  ///< of another program's picture
     std::string command;
     Image8 encoded;
-    Image radiance;  ///< empty: not known
-    Json stats;
+    Image radiance;                     ///< empty: not known
+    std::optional<PictureStats> stats;  ///< none: of another program's picture
 };
 
 /// As a POSIX shell takes it for one word.
@@ -122,7 +122,6 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
     if (picture.width != a.size.x || picture.height != a.size.y)
         fail("{} has {}x{} pixels, the others {}x{}: pictures must have the same size (--size)", path.string(),
              picture.width, picture.height, a.size.x, a.size.y);
-    entry.stats = {{"file", path.string()}};
     return entry;
 }
 
@@ -147,54 +146,47 @@ Difference difference(const Entry& reference, const Entry& test) {
     return compare(reference.encoded, test.encoded);
 }
 
-std::string ms(const Json& value) {
-    return value.is_number() ? fmt::format("{:.2f} ms", value.get<double>()) : "not measured";
+std::string ms(double value) {
+    return fmt::format("{:.2f} ms", value);
+}
+
+std::string mebibytes(uint64_t bytes) {
+    return fmt::format("{:.1f} MiB", double(bytes) / (1 << 20));
 }
 
 /// `warm`: times are medians after a frame that warmed up.
 std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
-    const Json& s = entry.stats;
     std::vector<ReportFact> facts;
-    if (s.contains("device"))
-        facts.emplace_back("device", s["device"].get<std::string>() + ", " + s["driver"].get<std::string>());
-    if (s.contains("frame_ms")) {
-        const bool cpu = entry.tracer == "reference";
-        facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s["frame_ms"]));
-        if (s.value("build_ms", 0.0) > 0)
-            facts.emplace_back(cpu                     ? "hierarchy"
-                               : entry.tracer == "khr" ? "of which the acceleration structures"
-                                                       : "of which the cubes",
-                               ms(s["build_ms"]));
-    }
-    if (s.contains("rays")) {
-        uint64_t secondary = 0;
-        for (const char* kind : {"reflection", "refraction", "shadow", "ambient"})
-            secondary += s["rays"][kind].get<uint64_t>();
-        facts.emplace_back("secondary rays", fmt::format("{:.2f} M", double(secondary) * 1e-6));
-    }
-    if (s.contains("ldc")) {
-        const Json& cube = s["ldc"];
-        facts.emplace_back("cubes", fmt::format("{} of up to {}³, {} hits", cube["count"].get<uint32_t>(),
-                                                cube["n"].get<uint32_t>(), s["hit"].get<std::string>()));
-        facts.emplace_back("samples", fmt::format("{}", cube["samples"].get<uint64_t>()));
-        facts.emplace_back("cubes in memory", fmt::format("{:.1f} MiB", cube["bytes"].get<double>() / (1 << 20)));
-    }
-    if (s.contains("khr")) {
-        const Json& khr = s["khr"];
-        facts.emplace_back("acceleration structures", fmt::format("{}, built: {}", khr["structures"].get<uint32_t>(),
-                                                                  khr["built"].get<std::string>()));
-        facts.emplace_back("structures in memory", fmt::format("{:.1f} MiB", khr["bytes"].get<double>() / (1 << 20)));
-    }
-    if (s.contains("cubemap")) {
-        const Json &probes = s["cubemap"]["probes"], &shadows = s["cubemap"]["shadow_maps"];
-        facts.emplace_back("of which the maps", ms(s["cubemap"]["maps_ms"]));
+    if (!entry.stats) return facts;
+    const PictureStats& stats = *entry.stats;
+    const RenderStats& s = stats.render;
+    const bool cpu = stats.by_reference, khr = !cpu && s.tracer == Tracer::khr;
+    facts.emplace_back("device", stats.machine.name + ", " + stats.machine.driver);
+    facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s.frame_ms));
+    if (s.build_ms > 0)
+        facts.emplace_back(cpu   ? "hierarchy"
+                           : khr ? "of which the acceleration structures"
+                                 : "of which the cubes",
+                           ms(s.build_ms));
+    facts.emplace_back("secondary rays", fmt::format("{:.2f} M", double(stats.rays.secondary()) * 1e-6));
+    if (stats.has_cubes()) {
         facts.emplace_back(
-            "cube maps", fmt::format("{} of 6 × {}²", probes["count"].get<uint32_t>(), probes["face"].get<uint32_t>()));
-        facts.emplace_back("shadow maps",
-                           fmt::format("{} of {}²", shadows["count"].get<uint32_t>(), shadows["size"].get<uint32_t>()));
-        facts.emplace_back(
-            "maps in memory",
-            fmt::format("{:.1f} MiB", (probes["bytes"].get<double>() + shadows["bytes"].get<double>()) / (1 << 20)));
+            "cubes", fmt::format("{} of up to {}³, {} hits", s.cubes.cubes(), s.cubes.resolution, name_of(s.hit)));
+        facts.emplace_back("samples", fmt::format("{}", s.cubes.counts.fragments));
+        facts.emplace_back("cubes in memory", mebibytes(s.cubes.bytes));
+    }
+    if (khr) {
+        facts.emplace_back("acceleration structures",
+                           fmt::format("{}, built: {}", s.structures.bodies,
+                                       s.structures.kept == s.structures.bodies ? "once" : name_of(s.update)));
+        facts.emplace_back("structures in memory", mebibytes(s.structures.bytes));
+    }
+    if (!cpu && s.tracer == Tracer::cubemap) {
+        const CubeMaps::Stats& maps = s.maps;
+        facts.emplace_back("of which the maps", ms(s.maps_ms));
+        facts.emplace_back("cube maps", fmt::format("{} of 6 × {}²", maps.probes, maps.face));
+        facts.emplace_back("shadow maps", fmt::format("{} of {}²", maps.shadows.maps, maps.shadows.size));
+        facts.emplace_back("maps in memory", mebibytes(maps.probe_bytes + maps.shadows.bytes));
     }
     return facts;
 }
@@ -228,7 +220,8 @@ Json json_of(const CompareArguments& a, const Report& report, const std::vector<
                                      {"hdr_flip", number(d->hdr_flip)},
                                      {"share_different", d->different},
                                      {"worst_pixel", {worst_pixel(d->map).x, worst_pixel(d->map).y}}};
-        picture["stats"] = entries[i].stats;
+        picture["stats"] =
+            entries[i].stats ? picture_json(*entries[i].stats) : Json{{"file", entries[i].file.string()}};
         json["pictures"].push_back(std::move(picture));
     }
     return json;

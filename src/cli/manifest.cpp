@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "cli/content_hash.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "cli/values.h"
 #include "image/image.h"
 

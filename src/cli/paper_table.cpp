@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 
 namespace peelray {
 
@@ -107,8 +107,9 @@ Json row_json(const BenchRow& row) {
     Json passes = Json::array();
     for (const RenderStats::Time& pass : row.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["passes"] = if_measured(passes);
-    for (const char* part : {"rays", "ldc", "memory_bytes"})
-        json[part] = row.stats.contains(part) ? row.stats[part] : Json(nullptr);
+    json["rays"] = row.stats ? rays_json(row.stats->rays) : Json(nullptr);
+    json["ldc"] = row.stats ? cubes_json(*row.stats) : Json(nullptr);
+    json["memory_bytes"] = row.stats ? memory_bytes_json(row.stats->render) : Json(nullptr);
     json["paper"] = {{"triangles", row.scene->triangles}, {"layers", row.scene->layers}};
     const PaperScene::Time* time = row.scene->at(row.ldc);
     json["paper"]["a_ms"] = time ? Json(time->a_ms) : Json(nullptr);
@@ -125,12 +126,11 @@ static std::string cell(const std::string& text) {
     return out;
 }
 
-std::string table_head(const BenchArguments& a, const Json& device) {
+std::string table_head(const BenchArguments& a, const Machine& device) {
     std::string text = fmt::format(
         "{}, driver {}, Vulkan {}, commit {}; {}x{} pixels, {} frame{} each, blocks of {}x{}; GPU milliseconds, "
         "medians\n\n",
-        device["device"].get<std::string>(), device["driver"].get<std::string>(),
-        device["api_version"].get<std::string>(), device["commit"].get<std::string>(), a.size.x, a.size.y, a.repeat,
+        device.name, device.driver, device.api_version, build_commit(), a.size.x, a.size.y, a.repeat,
         a.repeat == 1 ? "" : "s", a.block.x, a.block.y);
     text +=
         "| scene | triangles | builder | traversal | hits | LDIs | object | layers | A | least to most | B | least to "

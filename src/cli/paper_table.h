@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "workspace/stats.h"
 
 namespace peelray {
 
@@ -54,13 +55,13 @@ struct BenchRow {
     std::string left_out;            ///< why; empty: it was measured
     Spread a, b, frame;
     std::vector<RenderStats::Time> passes;  ///< medians
-    nlohmann::ordered_json stats;           ///< of the last frame: rays, ldc, memory_bytes
+    std::optional<PictureStats> stats;      ///< of the last frame
 };
 
 nlohmann::ordered_json row_json(const BenchRow& row);
 
-/// The table as Markdown: what stands before the rows, a row, what stands behind. `device`: device_stats().
-std::string table_head(const BenchArguments& arguments, const nlohmann::ordered_json& device);
+/// The table as Markdown: what stands before the rows, a row, what stands behind. `device`: that measured.
+std::string table_head(const BenchArguments& arguments, const Machine& device);
 std::string table_row(const BenchRow& row);
 std::string table_foot();
 

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
-#include "cli/stats.h"
 #ifdef PEELRAY_WITH_REFERENCE
 #include "cli/reference_picture.h"
 #include "motion/animation.h"
@@ -94,26 +93,19 @@ MadePicture PictureMaker::make_on_gpu(const RenderSettings& settings, const std:
     RenderResult result = renderer_for(settings).render(settings, progress);
     device_->check_validation();
     MadePicture made;
-    const RenderStats& s = result.stats;
-    made.stats = render_stats(*device_, result, scene_.triangles, scene_.bounds);
-    made.device = device_->info().name;
-    made.times = s.frames;
-    const std::string note = tolerance_note(s.bodies, s.choice);
+    PictureStats& stats = made.stats;
+    stats.machine = machine_of(*device_);
+    stats.width = result.width;
+    stats.height = result.height;
+    stats.triangles = scene_.triangles;
+    stats.box = scene_.bounds;
+    stats.rays = result.rays;
+    stats.render = std::move(result.stats);
+    for (const RayCostField& field : kRayCostFields)
+        stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
+    const std::string note = tolerance_note(stats.render.bodies, stats.render.choice);
     if (!note.empty() && !noted_tolerance_) print_note(note);
     noted_tolerance_ |= !note.empty();
-    if (s.cubes.bodies) made.summary = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
-    if (s.tracer == Tracer::cubemap)
-        made.summary = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
-                                   s.maps.shadows.maps);
-    if (s.tracer == Tracer::khr)
-        made.summary =
-            fmt::format(", {} acceleration structure{}", s.structures.bodies, s.structures.bodies == 1 ? "" : "s");
-    if (s.timed)
-        made.summary += fmt::format("; GPU {:.2f} ms ({} {:.2f} ms)", s.frame_ms,
-                                    s.tracer == Tracer::cubemap ? "maps"
-                                    : s.tracer == Tracer::khr   ? "structures"
-                                                                : "cube",
-                                    s.tracer == Tracer::cubemap ? s.maps_ms : s.build_ms);
     made.picture = std::move(result);
     return made;
 }

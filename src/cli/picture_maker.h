@@ -3,21 +3,16 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/prepare.h"
+#include "workspace/stats.h"
 
 namespace peelray {
 
 /// A picture and how it was made.
 struct MadePicture {
     Picture picture;
-    nlohmann::ordered_json stats;  ///< as the stats file has it
-    std::string device;            ///< its name
-    std::string summary;           ///< cube and times, for a reader of the terminal; may be empty
-
-    /// Of each frame that was measured; empty: not by a GPU.
-    std::vector<RenderStats::FrameTime> times;
+    PictureStats stats;
 };
 
 /// When and from where a picture is seen.

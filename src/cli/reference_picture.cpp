@@ -5,7 +5,6 @@
 #include <chrono>
 #include <thread>
 
-#include "cli/stats.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {
@@ -21,23 +20,20 @@ MadePicture reference_picture(PreparedScene& scene, const PictureSettings& setti
     made.picture = tracer.render(settings, progress);
     const auto done = Clock::now();
 
-    const double build_ms = ms(built - start), trace_ms = ms(done - built);
-    made.device = fmt::format("{} CPU threads", std::max(1u, std::thread::hardware_concurrency()));
-    made.stats = {{"tracer", "reference"},
-                  {"device", made.device},
-                  {"kind", "cpu"},
-                  {"driver", PathTracer::version()},
-                  {"api_version", nullptr},
-                  {"commit", build_commit()},
-                  {"image", {made.picture.width, made.picture.height}},
-                  {"triangles", scene.triangles},
-                  {"timed", true},
-                  {"frame_ms", trace_ms},
-                  {"build_ms", build_ms}};
-    made.stats["passes"] = {{{"name", "build/bvh"}, {"ms", build_ms}}, {{"name", "trace and shade"}, {"ms", trace_ms}}};
-    made.stats["rays"] = ray_stats(made.picture.rays);
-    made.stats["hit"] = "double";
-    made.summary = fmt::format("; BVH {:.2f} s, rays {:.2f} s", build_ms * 1e-3, trace_ms * 1e-3);
+    PictureStats& stats = made.stats;
+    stats.by_reference = true;
+    stats.machine = {fmt::format("{} CPU threads", std::max(1u, std::thread::hardware_concurrency())), "cpu",
+                     PathTracer::version(), ""};
+    stats.width = made.picture.width;
+    stats.height = made.picture.height;
+    stats.triangles = scene.triangles;
+    stats.box = scene.bounds;
+    stats.rays = made.picture.rays;
+    RenderStats& times = stats.render;
+    times.timed = true;
+    times.build_ms = ms(built - start);
+    times.frame_ms = ms(done - built);
+    times.passes = {{"build/bvh", times.build_ms}, {"trace and shade", times.frame_ms}};
     return made;
 }
 

@@ -4,8 +4,9 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "cli/picture_files.h"
+#include "cli/picture_maker.h"
 #include "cli/sequence.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "cli/values.h"
 
 namespace peelray {
@@ -13,14 +14,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Who answered for the rays, and times.
+std::string summary_of(const PictureStats& stats) {
+    const RenderStats& s = stats.render;
+    if (stats.by_reference) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
+    std::string text;
+    if (stats.has_cubes()) text = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
+    if (s.tracer == Tracer::cubemap)
+        text = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
+                           s.maps.shadows.maps);
+    if (s.tracer == Tracer::khr)
+        text = fmt::format(", {} acceleration structure{}", s.structures.bodies, s.structures.bodies == 1 ? "" : "s");
+    if (s.timed)
+        text += fmt::format("; GPU {:.2f} ms ({} {:.2f} ms)", s.frame_ms,
+                            s.tracer == Tracer::cubemap ? "maps"
+                            : s.tracer == Tracer::khr   ? "structures"
+                                                        : "cube",
+                            s.tracer == Tracer::cubemap ? s.maps_ms : s.build_ms);
+    return text;
+}
+
 /// What a reader of the terminal wants to know, once.
 void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
     const Picture& picture = made.picture;
     const double rays = double(picture.rays.primary + picture.rays.secondary());
     fmt::print("{}: {}x{}, {} triangles, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width,
                picture.height, triangles,
-               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6), made.summary,
-               seconds, made.device);
+               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6),
+               summary_of(made.stats), seconds, made.stats.machine.name);
 }
 
 }  // namespace
@@ -50,7 +71,7 @@ void run_render(const RenderArguments& a) {
         if (const RayCostField* field = cost_field(name))
             print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, name).string(),
                                    largest_of(made.picture.aovs.costs, *field)));
-    if (!a.stats.empty()) write_json(a.stats, made.stats);
+    if (!a.stats.empty()) write_json(a.stats, picture_json(made.stats));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(a, made, scene.triangles, seconds);
 }

@@ -7,7 +7,7 @@
 #include "cli/frame_pattern.h"
 #include "cli/manifest.h"
 #include "cli/picture_files.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "cli/values.h"
 #include "cli/video.h"
 #include "image/image.h"
@@ -65,7 +65,13 @@ class Run {
     std::string device_;  ///< that rendered so far
     RayCounts rays_;
     double frame_ms_ = 0, build_ms_ = 0;
-    Json frames_ = Json::array();
+    struct Frame {
+        uint32_t number;
+        Moment moment;
+        PictureStats stats;
+    };
+    Json frame_json(const Frame& frame) const;
+    std::vector<Frame> frames_;  ///< for the stats file, if there is one
 };
 
 MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
@@ -81,22 +87,24 @@ MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progres
 
 void Run::count(uint32_t frame, MadePicture& made) {
     done_++;
-    device_ = made.device;
+    device_ = made.stats.machine.name;
     const RayCounts& rays = made.picture.rays;
     rays_.primary += rays.primary;
     rays_.reflection += rays.reflection;
     rays_.refraction += rays.refraction;
     rays_.shadow += rays.shadow;
     rays_.ambient += rays.ambient;
-    frame_ms_ += made.stats["frame_ms"].get<double>();
-    build_ms_ += made.stats["build_ms"].get<double>();
-    if (arguments_.stats.empty()) return;
-    const Moment moment = sequence_.moment(frame);
-    const std::optional<double> time = moment.time ? moment.time : scene_.time;
-    Json entry = {{"frame", frame}, {"time", time ? Json(*time) : Json(nullptr)}};
-    if (sequence_.turntable > 0) entry["turn_degrees"] = moment.turn * 360;
-    entry.update(made.stats);
-    frames_.push_back(std::move(entry));
+    frame_ms_ += made.stats.render.frame_ms;
+    build_ms_ += made.stats.render.build_ms;
+    if (!arguments_.stats.empty()) frames_.push_back({frame, sequence_.moment(frame), std::move(made.stats)});
+}
+
+Json Run::frame_json(const Frame& frame) const {
+    const std::optional<double> time = frame.moment.time ? frame.moment.time : scene_.time;
+    Json json = {{"frame", frame.number}, {"time", time ? Json(*time) : Json(nullptr)}};
+    if (sequence_.turntable > 0) json["turn_degrees"] = frame.moment.turn * 360;
+    json.update(picture_json(frame.stats));
+    return json;
 }
 
 void Run::render(const std::vector<uint32_t>& frames, const Write& write) {
@@ -112,7 +120,9 @@ void Run::render(const std::vector<uint32_t>& frames, const Write& write) {
 
 Json Run::stats(size_t left_alone) const {
     const double seconds = seconds_since(start_);
-    return {{"frames", frames_},
+    Json frames = Json::array();
+    for (const Frame& frame : frames_) frames.push_back(frame_json(frame));
+    return {{"frames", frames},
             {"totals",
              {{"frames", done_},
               {"frames_left_alone", left_alone},
@@ -120,7 +130,7 @@ Json Run::stats(size_t left_alone) const {
               {"frames_per_second", done_ / seconds},
               {"frame_ms", frame_ms_},
               {"build_ms", build_ms_},
-              {"rays", ray_stats(rays_)}}}};
+              {"rays", rays_json(rays_)}}}};
 }
 
 std::string Run::summary(size_t left_alone) const {

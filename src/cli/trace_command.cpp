@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "cli/prepare.h"
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 #include "image/image.h"
 #include "image/npy.h"
 #include "loaders/load.h"
@@ -72,33 +72,31 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
     return result;
 }
 
-nlohmann::ordered_json trace_stats(Device& device, const Geometry& geometry, const RayScene& scene,
-                                   const Traced& traced, bool any_hit) {
-    nlohmann::ordered_json json = {{"tracer", scene.structures() ? "khr" : "ldc"}};
-    json.update(device_stats(device));
-    const CubeChoice& choice = scene.cubes().choice();
-    json["triangles"] = geometry.triangles.size();
-    json["rays"] = traced.hits.size();
-    json["hits"] = traced.found;
-    json["hit"] = scene.structures() ? "none" : name_of(choice.hit);
-    json["any_hit"] = any_hit;
-    json["build_ms"] = scene.build_ms();
-    for (const PassTime& time : scene.build_times()) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
-    json["passes"].push_back({{"name", "trace"}, {"ms", traced.trace_ms}});
-    json["trace_ms"] = traced.trace_ms;
-    json["mrays_per_second"] = nullptr;
-    if (traced.trace_ms > 0) json["mrays_per_second"] = double(traced.hits.size()) / traced.trace_ms * 1e-3;
-    constexpr const char* kind = "rays";
-    if (traced.counted) json["counters"] = counter_stats(traced.sums, std::span(&kind, 1));
+TraceStats trace_stats(Device& device, const Geometry& geometry, const RayScene& scene, const Traced& traced,
+                       bool any_hit) {
+    TraceStats stats;
+    stats.machine = machine_of(device);
+    stats.triangles = geometry.triangles.size();
+    stats.rays = traced.hits.size();
+    stats.hits = traced.found;
+    stats.any_hit = any_hit;
+    stats.build_ms = scene.build_ms();
+    stats.build_passes = scene.build_times();
+    stats.trace_ms = traced.trace_ms;
+    if (traced.counted) stats.costs = traced.sums;
+    stats.choice = scene.cubes().choice();
     if (scene.structures()) {
-        json["khr"] = structure_stats(scene.structures()->stats(), StructureUpdate::keep);
-        return json;
+        stats.structures = scene.structures()->stats();
+        return stats;
     }
     Commands commands(device);
-    json["ldc"] = cube_stats(scene.cubes().stats(), scene.download_bodies(commands), scene.shown(),
-                             {geometry.lower, geometry.upper}, choice);
-    json["memory"] = memory_stats(device.allocations(), device.peak_allocations());
-    return json;
+    stats.cubes = scene.cubes().stats();
+    stats.bodies = scene.download_bodies(commands);
+    stats.shown = scene.shown();
+    stats.box = {geometry.lower, geometry.upper};
+    stats.memory = device.allocations();
+    stats.peak_memory = device.peak_allocations();
+    return stats;
 }
 
 }  // namespace
@@ -138,7 +136,8 @@ void run_trace(const TraceArguments& a) {
     }
     write_hits(a.hits, traced.hits);
     if (!a.counters.empty()) write_costs(a.counters, traced.costs);
-    if (!a.stats.empty()) write_json(a.stats, trace_stats(device, geometry, traced_scene, traced, a.any_hit));
+    if (!a.stats.empty())
+        write_json(a.stats, trace_json(trace_stats(device, geometry, traced_scene, traced, a.any_hit)));
 
     fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
     if (traced_scene.structures())

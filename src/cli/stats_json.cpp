@@ -1,7 +1,8 @@
-#include "cli/stats.h"
+#include "cli/stats_json.h"
 
 #include <fstream>
 #include <map>
+#include <span>
 
 #include "base/error.h"
 #include "cli/program.h"
@@ -11,20 +12,20 @@ namespace peelray {
 
 using Json = nlohmann::ordered_json;
 
-Json device_stats(const Device& device) {
-    return {{"device", device.info().name},
-            {"kind", device.info().kind},
-            {"driver", device.info().driver},
-            {"api_version", device.info().api_version},
+Json machine_json(const Machine& machine) {
+    return {{"device", machine.name},
+            {"kind", machine.kind},
+            {"driver", machine.driver},
+            {"api_version", machine.api_version.empty() ? Json(nullptr) : Json(machine.api_version)},
             {"commit", build_commit()}};
 }
 
-static Json box_stats(const glm::vec3& lower, const glm::vec3& upper) {
+static Json box_json(const glm::vec3& lower, const glm::vec3& upper) {
     return {{"lower", {lower.x, lower.y, lower.z}}, {"upper", {upper.x, upper.y, upper.z}}};
 }
 
 /// One cube, in the space of its body.
-static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
+static Json body_json(const LdcBody& body, uint32_t instances, bool fixed) {
     const CubeGrid& grid = body.grid;
     // A bare body has a grid, but nothing in it.
     const bool bare = body.resolution & LDC_BARE;
@@ -38,38 +39,16 @@ static Json body_stats(const LdcBody& body, uint32_t instances, bool fixed) {
             {"n", bare ? 0 : body.resolution},
             {"voxels", {voxels.x, voxels.y, voxels.z}},
             {"voxel_size", bare ? 0 : grid.voxel},
-            {"box", box_stats(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
+            {"box", box_json(grid.origin, grid.origin + glm::vec3(grid.dims) * grid.voxel)}};
 }
 
-std::string count_of_cubes(const SceneCubes::Stats& cubes) {
-    return fmt::format("{} cube{} of up to {}", cubes.cubes(), cubes.cubes() == 1 ? "" : "s", cubes.resolution);
-}
-
-std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {
-    if (choice.hit != HitTest::tolerance) return {};
-    // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.
-    const LdcBody* worst = nullptr;
-    const auto voxels = [](const LdcBody& body) { return body.tolerance * body.grid.inv_voxel; };
-    // What is flat along an axis does not slope.
-    const auto flat = [](const LdcBody& body) {
-        return std::min({body.grid.dims.x, body.grid.dims.y, body.grid.dims.z}) <= 16;
-    };
-    for (const LdcBody& body : bodies)
-        if (!flat(body) && (!worst || voxels(body) < voxels(*worst))) worst = &body;
-    if (!worst || !(voxels(*worst) < 0.5f)) return {};
-    return fmt::format(
-        "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; --tolerance {:.2g} "
-        "makes "
-        "it a pixel",
-        choice.tolerance, voxels(*worst), choice.tolerance / voxels(*worst));
-}
-
-Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies, const std::vector<uint32_t>& shown,
-                const Box& box, const CubeChoice& choice) {
+/// `shown`: instances of each body.
+static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
+                       const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice) {
     const bool by_pixel = choice.layout.by_pixel();
     Json json = {
         {"n", cubes.resolution},
-        {"box", box_stats(box.lower, box.upper)},
+        {"box", box_json(box.lower, box.upper)},
         {"builder", name_of(choice.layout.builder)},
         {"traversal", name_of(choice.layout.traversal)},
         {"block",
@@ -97,11 +76,12 @@ Json cube_stats(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodi
     if (choice.layout.builder == BuilderKind::peel)
         json["peeling"] = {{"depth_complexity", cubes.counts.complexity}, {"passes", cubes.counts.passes}};
     for (size_t i = 0; i < std::min<size_t>(bodies.size(), 64); i++)
-        json["cubes"].push_back(body_stats(bodies[i], shown[i], i < cubes.fixed));
+        json["cubes"].push_back(body_json(bodies[i], shown[i], i < cubes.fixed));
     return json;
 }
 
-Json counter_stats(const AllKindCosts& costs, std::span<const char* const> names) {
+/// What rays of some kinds cost, named by `names`: means and the most of a single ray.
+static Json costs_json(const AllKindCosts& costs, std::span<const char* const> names) {
     Json json = {{"times", "counting slows the rays: the times here are not to be trusted"}};
     for (size_t kind = 0; kind < names.size(); kind++) {
         const KindCosts& cost = costs[kind];
@@ -115,7 +95,7 @@ Json counter_stats(const AllKindCosts& costs, std::span<const char* const> names
     return json;
 }
 
-static Json allocation_stats(const std::vector<Allocation>& allocations) {
+static Json allocations_json(const std::vector<Allocation>& allocations) {
     uint64_t sum = 0;
     std::map<std::string, std::map<std::string, uint64_t>> parts;
     for (const Allocation& allocation : allocations) {
@@ -131,21 +111,22 @@ static Json allocation_stats(const std::vector<Allocation>& allocations) {
     return json;
 }
 
-Json memory_stats(const std::vector<Allocation>& now, const std::vector<Allocation>& peak) {
-    Json json = allocation_stats(now);
-    json["peak"] = allocation_stats(peak);
+/// All device memory by part and buffer, now and at the peak: sums are those of the device.
+static Json memory_json(const std::vector<Allocation>& now, const std::vector<Allocation>& peak) {
+    Json json = allocations_json(now);
+    json["peak"] = allocations_json(peak);
     return json;
 }
 
-/// Of a picture; `costs`: of its pixels.
-static Json picture_counters(const AllKindCosts& kinds, const std::vector<RayCosts>& costs) {
+static Json picture_costs_json(const PictureStats& stats) {
     constexpr const char* names[] = {"reflection_and_refraction", "shadow"};
-    Json json = counter_stats(kinds, names);
-    for (const RayCostField& field : kRayCostFields) json["largest_of_a_pixel"][field.name] = largest_of(costs, field);
+    Json json = costs_json(stats.render.costs, names);
+    for (const RayCostField& field : kRayCostFields)
+        json["largest_of_a_pixel"][field.name] = stats.largest_of_a_pixel.*field.value;
     return json;
 }
 
-Json ray_stats(const RayCounts& rays) {
+Json rays_json(const RayCounts& rays) {
     return {{"primary", rays.primary},
             {"reflection", rays.reflection},
             {"refraction", rays.refraction},
@@ -153,7 +134,7 @@ Json ray_stats(const RayCounts& rays) {
             {"ambient", rays.ambient}};
 }
 
-static Json map_stats(const RenderStats& stats) {
+static Json maps_json(const RenderStats& stats) {
     const CubeMaps::Stats& m = stats.maps;
     return {{"maps_ms", stats.maps_ms},
             {"probes",
@@ -170,7 +151,8 @@ static Json map_stats(const RenderStats& stats) {
               {"bytes", m.shadows.bytes}}}};
 }
 
-Json structure_stats(const Structures::Stats& s, StructureUpdate update) {
+/// `update`: of the structures that are not kept.
+static Json structures_json(const Structures::Stats& s, StructureUpdate update) {
     return {{"structures", s.bodies},
             {"kept", s.kept},
             {"built", s.kept == s.bodies ? "once" : name_of(update)},
@@ -194,47 +176,94 @@ static const char* name_of(Tracer tracer) {
     return "";
 }
 
-Json render_stats(const Device& device, const RenderResult& result, uint64_t triangles, const Box& box) {
-    const RenderStats& s = result.stats;
-    Json json = {{"tracer", name_of(s.tracer)}};
-    json.update(device_stats(device));
-    json["image"] = {result.width, result.height};
-    json["triangles"] = triangles;
-    json["timed"] = s.timed;
-    json["frame_ms"] = s.frame_ms;
-    json["build_ms"] = s.build_ms;
+Json cubes_json(const PictureStats& stats) {
+    const RenderStats& s = stats.render;
+    return stats.has_cubes() ? cubes_json(s.cubes, s.bodies, s.shown, stats.box, s.choice) : Json(nullptr);
+}
+
+Json memory_bytes_json(const RenderStats& s) {
+    return {{"scene", s.scene_bytes},
+            {"cube", s.cubes.bytes},
+            {"acceleration_structures", s.structures.bytes},
+            {"build_scratch", s.cubes.scratch_bytes + s.structures.scratch_bytes},
+            {"frame", s.frame_bytes},
+            {"peak", s.peak_bytes}};
+}
+
+static Json rates_json(const PictureStats& stats) {
     double trace_ms = 0, shadow_ms = 0;
-    for (const auto& pass : s.passes) {
-        json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
+    for (const RenderStats::Time& pass : stats.render.passes) {
         if (pass.name.starts_with("trace_shadow"))
             shadow_ms = pass.ms;
         else if (pass.name.starts_with("trace"))
             trace_ms = pass.ms;
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
-    json["rays"] = ray_stats(result.rays);
-    json["mrays_per_second"] = {
-        {"reflection_and_refraction", rate(result.rays.reflection + result.rays.refraction, trace_ms)},
-        {"shadow_and_ambient", rate(result.rays.shadow + result.rays.ambient, shadow_ms)}};
-    if (s.cubes.bodies) {
-        json["ldc"] = cube_stats(s.cubes, s.bodies, s.shown, box, s.choice);
+    const RayCounts& rays = stats.rays;
+    return {{"reflection_and_refraction", rate(rays.reflection + rays.refraction, trace_ms)},
+            {"shadow_and_ambient", rate(rays.shadow + rays.ambient, shadow_ms)}};
+}
+
+/// What only a device's picture has.
+static void add_render_json(Json& json, const PictureStats& stats) {
+    const RenderStats& s = stats.render;
+    json["mrays_per_second"] = rates_json(stats);
+    if (stats.has_cubes()) {
+        json["ldc"] = cubes_json(stats);
         json["moved"] = {{"cubes_rebuilt", s.rebuilt},
                          {"cubes_reused", s.cubes.bodies - s.rebuilt},
                          {"instances_transformed", s.moved}};
     }
-    if (s.counted) json["counters"] = picture_counters(s.costs, result.aovs.costs);
-    if (s.tracer == Tracer::cubemap) json["cubemap"] = map_stats(s);
+    if (s.counted) json["counters"] = picture_costs_json(stats);
+    if (s.tracer == Tracer::cubemap) json["cubemap"] = maps_json(s);
     json["visibility"] = s.visibility == Visibility::compute ? "compute" : "raster";
-    if (s.tracer == Tracer::khr) json["khr"] = structure_stats(s.structures, s.update);
-    json["hit"] = s.cubes.bodies ? name_of(s.hit) : "none";
-    json["memory_bytes"] = {{"scene", s.scene_bytes},
-                            {"cube", s.cubes.bytes},
-                            {"acceleration_structures", s.structures.bytes},
-                            {"build_scratch", s.cubes.scratch_bytes + s.structures.scratch_bytes},
-                            {"frame", s.frame_bytes},
-                            {"peak", s.peak_bytes}};
-    json["memory"] = memory_stats(s.memory, s.peak_memory);
+    if (s.tracer == Tracer::khr) json["khr"] = structures_json(s.structures, s.update);
+    json["hit"] = stats.has_cubes() ? name_of(s.hit) : "none";
+    json["memory_bytes"] = memory_bytes_json(s);
+    json["memory"] = memory_json(s.memory, s.peak_memory);
     json["redone"] = s.redone;
+}
+
+Json picture_json(const PictureStats& stats) {
+    const RenderStats& s = stats.render;
+    Json json = {{"tracer", stats.by_reference ? "reference" : name_of(s.tracer)}};
+    json.update(machine_json(stats.machine));
+    json["image"] = {stats.width, stats.height};
+    json["triangles"] = stats.triangles;
+    json["timed"] = s.timed;
+    json["frame_ms"] = s.frame_ms;
+    json["build_ms"] = s.build_ms;
+    for (const RenderStats::Time& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
+    json["rays"] = rays_json(stats.rays);
+    if (stats.by_reference)
+        json["hit"] = "double";
+    else
+        add_render_json(json, stats);
+    return json;
+}
+
+Json trace_json(const TraceStats& s) {
+    Json json = {{"tracer", s.structures ? "khr" : "ldc"}};
+    json.update(machine_json(s.machine));
+    json["triangles"] = s.triangles;
+    json["rays"] = s.rays;
+    json["hits"] = s.hits;
+    json["hit"] = s.structures ? "none" : name_of(s.choice.hit);
+    json["any_hit"] = s.any_hit;
+    json["build_ms"] = s.build_ms;
+    for (const PassTime& time : s.build_passes) json["passes"].push_back({{"name", time.name}, {"ms", time.ms}});
+    json["passes"].push_back({{"name", "trace"}, {"ms", s.trace_ms}});
+    json["trace_ms"] = s.trace_ms;
+    json["mrays_per_second"] = nullptr;
+    if (s.trace_ms > 0) json["mrays_per_second"] = double(s.rays) / s.trace_ms * 1e-3;
+    constexpr const char* kind = "rays";
+    if (s.costs) json["counters"] = costs_json(*s.costs, std::span(&kind, 1));
+    if (s.structures) {
+        json["khr"] = structures_json(*s.structures, StructureUpdate::keep);
+        return json;
+    }
+    json["ldc"] = cubes_json(s.cubes, s.bodies, s.shown, s.box, s.choice);
+    json["memory"] = memory_json(s.memory, s.peak_memory);
     return json;
 }
 

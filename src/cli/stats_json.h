@@ -1,0 +1,28 @@
+// The stats files: the one place where statistics become JSON. Keys, their order and their values are a contract.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "workspace/stats.h"
+
+namespace peelray {
+
+/// Device, driver, API version and the build's commit.
+nlohmann::ordered_json machine_json(const Machine& machine);
+/// All of a picture.
+nlohmann::ordered_json picture_json(const PictureStats& stats);
+/// Of `peelray trace`.
+nlohmann::ordered_json trace_json(const TraceStats& stats);
+
+/// Parts of a picture's: rays by kind; cubes (the first 64 one by one), null where none traced; bytes by structure.
+nlohmann::ordered_json rays_json(const RayCounts& rays);
+nlohmann::ordered_json cubes_json(const PictureStats& stats);
+nlohmann::ordered_json memory_bytes_json(const RenderStats& stats);
+
+/// Writes indented JSON, atomically. Throws Error if unwritable.
+void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+/// The same, but leaves a file that is there alone. Returns whether it wrote.
+bool write_json_if_absent(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+
+}  // namespace peelray

@@ -1,0 +1,60 @@
+// How pictures and rays were made, for whoever wants to read or write it down.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "render/renderer.h"
+
+namespace peelray {
+
+/// What computed something: a device, or the processor.
+struct Machine {
+    std::string name, kind, driver;
+    std::string api_version;  ///< empty: no Vulkan device
+};
+
+Machine machine_of(const Device& device);
+
+/// How a picture was made.
+struct PictureStats {
+    bool by_reference = false;  ///< by the CPU reference: of `render` only times and passes hold
+    Machine machine;
+    uint32_t width = 0, height = 0;
+    uint64_t triangles = 0;  ///< of the scene, with all instances
+    Box box;                 ///< of the scene
+    RayCounts rays;
+    RenderStats render;
+    RayCosts largest_of_a_pixel;  ///< where costs were counted
+
+    /// Were rays traced in layered depth cubes?
+    bool has_cubes() const { return !by_reference && render.cubes.bodies > 0; }
+};
+
+/// How rays from a file were traced.
+struct TraceStats {
+    Machine machine;
+    uint64_t triangles = 0, rays = 0, hits = 0;
+    bool any_hit = false;
+    double build_ms = 0, trace_ms = 0;  ///< trace_ms: median over the repetitions
+    std::vector<PassTime> build_passes;
+    std::optional<AllKindCosts> costs;            ///< where they were counted; of all rays in the first entry
+    std::optional<Structures::Stats> structures;  ///< of the device's own ray tracing; none: rays went through cubes
+    CubeChoice choice;
+    SceneCubes::Stats cubes;
+    std::vector<LdcBody> bodies;  ///< with the grids of their cubes
+    std::vector<uint32_t> shown;  ///< how many instances show each of them
+    Box box;                      ///< of the scene
+    std::vector<Allocation> memory, peak_memory;
+};
+
+/// "2 cubes of up to 368": how many, and their voxels along the longest side.
+std::string count_of_cubes(const SceneCubes::Stats& cubes);
+
+/// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:
+/// nothing. `bodies`: with the grids of their cubes.
+std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice);
+
+}  // namespace peelray
