@@ -2,7 +2,8 @@
 """docs_test.py [PROGRAM]: checks README.md, docs/*.md and findings/*.md, and what sources say about them.
 
 README.md has at most 1,300 words; prose is wrapped at 120 columns; relative links lead to files and headings that exist;
-documents that are named exist, with the sections that are named; every option of PROGRAM that is named is in its help.
+documents and files that are named exist, with the sections that are named; every option of PROGRAM that is named is in its
+help.
 The faults of a small folder made here are found, too: a check that finds nothing would pass any document.
 """
 import pathlib
@@ -111,6 +112,27 @@ def named_faults(root):
     return faults
 
 
+def path_faults(root):
+    """Files of the sources that the documents name and that do not exist. What add_*.md has the reader make need not."""
+    made = {p.name for folder in ("src", "include", "shaders", "tests", "bench") for p in (root / folder).rglob("*.*")}
+    faults = []
+    for document in documents(root):
+        for number, line, code in prose_and_code(document.read_text()):
+            for span in re.findall(r"`([^`\s]+)`", "" if code else line):
+                span = span.replace("NAME", "*")
+                if re.fullmatch(r"(src|include|shaders|tests|bench|scripts|examples|cmake|docs|findings)/[\w./*-]+", span):
+                    there = any(root.glob(span.rstrip("/")))
+                    if not there and document.name.startswith("add_"):
+                        there = any(root.glob(str(pathlib.PurePath(span).parent)))
+                elif re.fullmatch(r"\w+\.(comp|glsl|vert|frag|geom|cpp|h|py)", span):
+                    there = span in made or document.name.startswith("add_")
+                else:
+                    continue
+                if not there:
+                    faults.append(f"{document.name}:{number}: {span}: no such file")
+    return faults
+
+
 def help_of_program():
     """The options of each command, by its help pages."""
     page = lambda *command: subprocess.run([PROGRAM, *command, "--help"], capture_output=True, text=True, check=True).stdout
@@ -175,6 +197,9 @@ class Documents(unittest.TestCase):
     def test_named_documents(self):
         self.assertEqual(named_faults(ROOT), [])
 
+    def test_paths(self):
+        self.assertEqual(path_faults(ROOT), [])
+
     @unittest.skipIf(PROGRAM is None, "no program was given")
     def test_options(self):
         options, any_option = help_of_program()
@@ -203,7 +228,8 @@ class Faults(unittest.TestCase):
         return option_faults(self.root, {"render": {"--good"}, "trace": {"--other"}}, {"--good", "--other"})
 
     def test_a_good_folder_has_none(self):
-        self.assertEqual(length_faults(self.root) + link_faults(self.root) + named_faults(self.root), [])
+        self.assertEqual(length_faults(self.root) + link_faults(self.root) + named_faults(self.root) +
+                         path_faults(self.root), [])
         self.assertEqual(self.option_faults(), [])
 
     def test_lengths(self):
@@ -226,6 +252,13 @@ class Faults(unittest.TestCase):
                          ["docs/a.md: PLAN.md: no such document", "docs/a.md: other.md: no such document",
                           "docs/a.md: PLAN: no such document", "src/a.cpp: docs/b.md: no such document",
                           "src/a.cpp: DESIGN.md: no such document", "src/a.cpp: docs/a.md has no 'Some section'"])
+
+    def test_paths(self):
+        self.write("docs/a.md", "# A\n\n`src/a.*`, `a.cpp`, `src/b.cpp`, `b.comp`\n\n    `src/code.cpp`\n")
+        self.write("docs/add_x.md", "# X\n\n`src/new.cpp`, `new.comp`, `nowhere/or/not`, `src/gone/new.cpp`\n")
+        self.assertEqual(path_faults(self.root),
+                         ["a.md:3: src/b.cpp: no such file", "a.md:3: b.comp: no such file",
+                          "add_x.md:3: src/gone/new.cpp: no such file"])
 
     def test_options(self):
         self.write("docs/a.md", "# A\n\n`--bad` and `--other`\n\n    $ peelray render x \\\n        --other\n    cmake --preset x\n")
