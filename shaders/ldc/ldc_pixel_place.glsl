@@ -1,10 +1,10 @@
 // Writing a sample of the by-pixel order to its final place, counted from the build's first sample.
-// STREAM: fragments of drawn streams, whose triangles are gone.
+// With the constant `streams`: fragments of drawn streams, whose triangles are gone.
 #include "ldc/ldc_projected.glsl"
 
 void placePixelSample(uint at, uint fragment) {
     const LdcFragment f = fragments[fragment];
-    if (STREAM) {
+    if (streams) {
         const LdcCaptured c = captured[fragment];
         samples[params.first_sample + at] = uvec2(f.local, c.slope);
         sample_ids[params.first_sample + at] = f.id;

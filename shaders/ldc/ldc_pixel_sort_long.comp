@@ -2,7 +2,7 @@
 #version 460
 #include "ldc/ldc_common.glsl"
 layout(local_size_x = 256) in;
-layout(constant_id = 0) const bool STREAM = false;
+layout(constant_id = 0) const bool streams = false;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)
 BUFFER(readonly, 1, LdcFragment, fragments)

@@ -14,7 +14,7 @@ layout(location = 0) flat in uvec2 corner_id[];
 void emitAt(vec4 clip, LdcTriangle t, uint id, uint body, vec3 normal) {
     ldcHandOn(t, id, body, normal);
     gl_Position = clip;
-    gl_Layer = LAYERED ? int(id & 3u) : 0;
+    gl_Layer = layered ? int(id & 3u) : 0;
     EmitVertex();
 }
 
@@ -28,7 +28,7 @@ void main() {
         if (!ldcCaptured(normal, axis, params.sampling)) continue;
         const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
         const uint id = triangle << 2u | axis;
-        if (DILATED) {
+        if (dilated) {
             // A strip that runs to and fro between both ends of the polygon's outline.
             const LdcPolygon p = ldcGrown(t);
             for (int i = 0; i < p.count; i++) emitAt(ldcGrownClip(p, (i & 1) != 0 ? (i + 1) / 2 : (p.count - i / 2) % p.count), t, id, body, normal);

@@ -7,9 +7,9 @@
 #include "ldc/ldc_common.glsl"
 #include "ldc/ldc_routed.glsl"
 
-layout(constant_id = 0) const bool BY_GEOMETRY = true;  // the geometry shader routes, else the vertex shader
-layout(constant_id = 1) const bool DILATED = false;     // by half a pixel and more: for conservative sampling
-layout(constant_id = 2) const bool LAYERED = false;     // each LDI is a layer of the target
+layout(constant_id = 0) const bool by_geometry = true;  // the geometry shader routes, else the vertex shader
+layout(constant_id = 1) const bool dilated = false;     // by half a pixel and more: for conservative sampling
+layout(constant_id = 2) const bool layered = false;     // each LDI is a layer of the target
 
 LDC_ROUTED(out)
 

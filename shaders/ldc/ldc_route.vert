@@ -12,10 +12,10 @@ BUFFER(readonly, 3, LdcBody, bodies)
 
 void main() {
     // Five triangles of three corners make seven sides.
-    const uint corners = DILATED && !BY_GEOMETRY ? 15u : 3u;
+    const uint corners = dilated && !by_geometry ? 15u : 3u;
     const uint id = params.first_triangle + uint(gl_VertexIndex) / corners, k = uint(gl_VertexIndex) % corners;
     const uvec3 numbers = triangles[id];
-    if (BY_GEOMETRY) {
+    if (by_geometry) {
         routed_id = uvec2(id, 0);
         gl_Position = vec4(positions[numbers[k]], 1);
         return;
@@ -28,7 +28,7 @@ void main() {
     if (!ldcDrawn(a, b, c, grid, normal) || !ldcCaptured(normal, axis, params.sampling)) return;
     const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
     ldcHandOn(t, id << 2u | axis, body, normal);
-    if (DILATED) {
+    if (dilated) {
         const LdcPolygon p = ldcGrown(t);
         gl_Position = ldcGrownClip(p, k % 3u == 0u ? 0 : int(k / 3u + k % 3u));
     } else {

@@ -26,7 +26,7 @@ bool extension_available(VkPhysicalDevice device, const char* name) {
 /// What the device owns and makes on demand.
 struct Device::State {
     std::unique_ptr<PipelineCache> cache;
-    std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<Pass>> passes;
+    std::map<std::pair<std::string, Constants>, std::unique_ptr<Pass>> passes;
     std::map<std::pair<std::string, RasterSetup>, std::unique_ptr<RasterPass>> raster_passes;
     std::map<std::pair<std::string, RaySetup>, std::unique_ptr<RayPass>> ray_passes;
 };
@@ -178,7 +178,7 @@ Device::~Device() {
     vkDestroyInstance(instance_, nullptr);
 }
 
-const Pass& Device::pass(std::string_view shader, const std::vector<uint32_t>& constants) {
+const Pass& Device::pass(std::string_view shader, const Constants& constants) {
     auto& entry = state_->passes[{std::string(shader), constants}];
     if (!entry) entry = std::make_unique<Pass>(*this, state_->cache->handle(), shader, constants);
     return *entry;

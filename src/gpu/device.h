@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "gpu/constants.h"
+
 namespace peelray {
 
 class Pass;
@@ -84,9 +86,9 @@ class Device {
     /// Nanoseconds per timestamp tick; 0: the queue cannot time.
     double timestamp_period() const { return timestamp_period_; }
 
-    /// The pass named like its shader file, made once and kept (shaders/NAME.comp). `constants` are the shader's
-    /// specialisation constants 0, 1, …; each combination is a pass of its own.
-    const Pass& pass(std::string_view shader, const std::vector<uint32_t>& constants = {});
+    /// The pass named like its shader file, made once and kept (shaders/*/NAME.comp). Every specialisation constant of
+    /// the shader must be given once, by its name (asserted); each combination of values is a pass of its own.
+    const Pass& pass(std::string_view shader, const Constants& constants = {});
 
     /// The rasterising pass whose fragment shader is NAME.frag, made once and kept for each setup.
     const RasterPass& raster_pass(std::string_view shader, const RasterSetup& setup);

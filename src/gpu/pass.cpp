@@ -21,9 +21,24 @@ std::span<const uint32_t> find_shader(std::string_view name) {
 
 }  // namespace
 
-Specialization::Specialization(const std::vector<uint32_t>& constants) {
-    for (uint32_t i = 0; i < constants.size(); i++) entries_.push_back({i, i * 4, 4});
-    info_ = {uint32_t(entries_.size()), entries_.data(), constants.size() * 4, constants.data()};
+Specialization::Specialization(std::string_view pass, const ShaderInterface& interface, const Constants& constants) {
+    const auto with_name = [](std::string_view name) {
+        return [=](const auto& constant) { return constant.name == name; };
+    };
+    for (const Constant& given : constants) {
+        if (std::ranges::none_of(interface.constants, with_name(given.name)))
+            fail("the pass {} has no constant '{}' (a programming error)", pass, given.name);
+        if (std::ranges::count_if(constants, with_name(given.name)) > 1)
+            fail("the pass {} was given the constant '{}' twice (a programming error)", pass, given.name);
+    }
+    for (const ShaderConstant& wanted : interface.constants) {
+        const auto given = std::ranges::find_if(constants, with_name(wanted.name));
+        if (given == constants.end())
+            fail("the pass {} was not given the constant '{}' (a programming error)", pass, wanted.name);
+        entries_.push_back({wanted.id, uint32_t(values_.size() * 4), 4});
+        values_.push_back(given->value);
+    }
+    info_ = {uint32_t(entries_.size()), entries_.data(), values_.size() * 4, values_.data()};
 }
 
 void register_shaders(std::span<const EmbeddedShader> shaders) {
@@ -41,6 +56,16 @@ void ShaderInterface::add(const ShaderBinding& found) {
     same->writes |= found.writes;
 }
 
+void ShaderInterface::add(const ShaderConstant& found) {
+    for (const ShaderConstant& other : constants) {
+        if (other.name == found.name && other.id == found.id) return;
+        if (other.name == found.name || other.id == found.id)
+            fail("two stages disagree on a constant: '{}' is number {} and '{}' number {} (a programming error)",
+                 other.name, other.id, found.name, found.id);
+    }
+    constants.push_back(found);
+}
+
 void ShaderInterface::reflect(std::span<const uint32_t> code) {
     const spirv_cross::Compiler compiler(std::vector<uint32_t>(code.begin(), code.end()));
     const auto resources = compiler.get_shader_resources();
@@ -49,13 +74,16 @@ void ShaderInterface::reflect(std::span<const uint32_t> code) {
         const std::string suffix = "_block";
         if (name.size() > suffix.size() && name.ends_with(suffix)) name.resize(name.size() - suffix.size());
         const auto flags = compiler.get_buffer_block_flags(resource.id);
-        add({name, compiler.get_decoration(resource.id, spv::DecorationBinding), !flags.get(spv::DecorationNonReadable),
-             !flags.get(spv::DecorationNonWritable)});
+        add(ShaderBinding{name, compiler.get_decoration(resource.id, spv::DecorationBinding),
+                          !flags.get(spv::DecorationNonReadable), !flags.get(spv::DecorationNonWritable)});
     }
     for (const auto& image : resources.separate_images)
-        add({image.name, compiler.get_decoration(image.id, spv::DecorationBinding), true, false, true});
+        add(ShaderBinding{image.name, compiler.get_decoration(image.id, spv::DecorationBinding), true, false, true});
     for (const auto& structure : resources.acceleration_structures)
-        add({structure.name, compiler.get_decoration(structure.id, spv::DecorationBinding), true, false, false, true});
+        add(ShaderBinding{structure.name, compiler.get_decoration(structure.id, spv::DecorationBinding), true, false,
+                          false, true});
+    for (const auto& constant : compiler.get_specialization_constants())
+        add(ShaderConstant{compiler.get_name(constant.id), constant.constant_id});
     for (const auto& resource : resources.push_constant_buffers) {
         const auto size = compiler.get_declared_struct_size(compiler.get_type(resource.base_type_id));
         push_constant_bytes = std::max(push_constant_bytes, uint32_t(size));
@@ -74,15 +102,33 @@ PassBase::~PassBase() {
     device_.vk.vkDestroyDescriptorSetLayout(device_.handle, set_layout_, nullptr);
 }
 
-VkShaderModule PassBase::create_module(std::string_view shader) {
+uint32_t PassBase::add_stage(VkShaderStageFlagBits bit, std::string_view shader) {
     const std::span<const uint32_t> code = find_shader(shader);
     interface_.reflect(code);
-    VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, code.size_bytes(),
-                                  code.data()};
-    VkShaderModule module = VK_NULL_HANDLE;
-    check_vulkan(device_.vk.vkCreateShaderModule(device_.handle, &info, nullptr, &module),
-                 "loading the shader " + name_);
-    return module;
+    stages_ |= bit;
+    added_.push_back({bit, code});
+    return uint32_t(added_.size() - 1);
+}
+
+std::vector<VkPipelineShaderStageCreateInfo> PassBase::create_stages(const Constants& constants) {
+    specialization_.emplace(name_, interface_, constants);
+    create_layout();
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    for (const Stage& stage : added_) {
+        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, stage.code.size_bytes(),
+                                      stage.code.data()};
+        VkShaderModule module = VK_NULL_HANDLE;
+        const VkResult result = device_.vk.vkCreateShaderModule(device_.handle, &info, nullptr, &module);
+        if (result != VK_SUCCESS) destroy_modules(stages);
+        check_vulkan(result, "loading the shader " + name_);
+        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit, module, "main",
+                          specialization_->info()});
+    }
+    return stages;
+}
+
+void PassBase::destroy_modules(std::span<const VkPipelineShaderStageCreateInfo> stages) {
+    for (const auto& stage : stages) device_.vk.vkDestroyShaderModule(device_.handle, stage.module, nullptr);
 }
 
 void PassBase::create_layout() {
@@ -104,25 +150,16 @@ void PassBase::create_layout() {
     check_vulkan(device_.vk.vkCreatePipelineLayout(device_.handle, &info, nullptr, &layout_), "laying out " + name_);
 }
 
-Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const std::vector<uint32_t>& constants)
+Pass::Pass(Device& device, VkPipelineCache cache, std::string_view shader, const Constants& constants)
     : PassBase(device, std::string(shader)) {
-    stages_ = VK_SHADER_STAGE_COMPUTE_BIT;
-    VkShaderModule module = create_module(shader);
-    create_layout();
-
-    const Specialization specialization(constants);
+    add_stage(VK_SHADER_STAGE_COMPUTE_BIT, shader);
+    const auto stages = create_stages(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  nullptr,
-                  0,
-                  VK_SHADER_STAGE_COMPUTE_BIT,
-                  module,
-                  "main",
-                  specialization.info()};
+    info.stage = stages[0];
     info.layout = layout_;
     if (device.features.executable_properties) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     const VkResult result = device.vk.vkCreateComputePipelines(device.handle, cache, 1, &info, nullptr, &pipeline_);
-    device.vk.vkDestroyShaderModule(device.handle, module, nullptr);
+    destroy_modules(stages);
     check_vulkan(result, "compiling the shader " + name_);
 }
 
@@ -157,27 +194,14 @@ std::vector<std::pair<std::string, double>> Pass::statistics() const {
 RasterPass::RasterPass(Device& device, VkPipelineCache cache, std::string_view shader, const RasterSetup& setup)
     : PassBase(device, std::string(shader)), setup_(setup) {
     const std::string front = setup.front.empty() ? name_ : setup.front;
-    struct Stage {
-        VkShaderStageFlagBits bit;
-        std::string file;
-    };
-    std::vector<Stage> files = {{VK_SHADER_STAGE_VERTEX_BIT, front + ".vert"}};
+    add_stage(VK_SHADER_STAGE_VERTEX_BIT, front + ".vert");
     if (setup.patch_points) {
-        files.push_back({VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, front + ".tesc"});
-        files.push_back({VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, front + ".tese"});
+        add_stage(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, front + ".tesc");
+        add_stage(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, front + ".tese");
     }
-    if (!setup.geometry.empty()) files.push_back({VK_SHADER_STAGE_GEOMETRY_BIT, setup.geometry + ".geom"});
-    files.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, name_ + ".frag"});
-
-    const Specialization specialization(setup.constants);
-    std::vector<VkPipelineShaderStageCreateInfo> stages;
-    for (const Stage& stage : files) {
-        stages_ |= stage.bit;
-        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit,
-                          create_module(stage.file), "main", specialization.info()});
-    }
-    create_layout();
-    create_pipeline(cache, stages);
+    if (!setup.geometry.empty()) add_stage(VK_SHADER_STAGE_GEOMETRY_BIT, setup.geometry + ".geom");
+    add_stage(VK_SHADER_STAGE_FRAGMENT_BIT, name_ + ".frag");
+    create_pipeline(cache, create_stages(setup.constants));
 }
 
 void RasterPass::create_pipeline(VkPipelineCache cache, std::span<const VkPipelineShaderStageCreateInfo> stages) {
@@ -231,7 +255,7 @@ void RasterPass::create_pipeline(VkPipelineCache cache, std::span<const VkPipeli
     info.pDynamicState = &dynamic;
     info.layout = layout_;
     const VkResult result = device_.vk.vkCreateGraphicsPipelines(device_.handle, cache, 1, &info, nullptr, &pipeline_);
-    for (const auto& stage : stages) device_.vk.vkDestroyShaderModule(device_.handle, stage.module, nullptr);
+    destroy_modules(stages);
     check_vulkan(result, "compiling the shader " + name_);
 }
 

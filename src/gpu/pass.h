@@ -1,10 +1,12 @@
 // A pass: one shader, the bindings that reflection finds in it, one pipeline.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "gpu/constants.h"
 #include "gpu/device.h"
 #include "gpu/shader_table.h"
 
@@ -19,9 +21,16 @@ struct ShaderBinding {
     bool structure = false;  ///< an acceleration structure
 };
 
-/// What a shader (or the stages of a rasterising pass together) declares.
+/// A specialisation constant as reflection sees it.
+struct ShaderConstant {
+    std::string name;
+    uint32_t id;
+};
+
+/// What a shader (or the stages of a pass together) declares.
 struct ShaderInterface {
     std::vector<ShaderBinding> bindings;
+    std::vector<ShaderConstant> constants;  ///< those that the compiled code uses
     uint32_t push_constant_bytes = 0;
     uint32_t group_size[3] = {1, 1, 1};
 
@@ -30,6 +39,7 @@ struct ShaderInterface {
 
   private:
     void add(const ShaderBinding& found);
+    void add(const ShaderConstant& found);
 };
 
 inline VkDescriptorType descriptor_type(const ShaderBinding& binding) {
@@ -38,16 +48,18 @@ inline VkDescriptorType descriptor_type(const ShaderBinding& binding) {
                              : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-/// Specialisation constants 0, 1, … of a shader, as Vulkan takes them. `constants` must outlive it.
+/// The values of a pass's specialisation constants, as Vulkan takes them.
 class Specialization {
   public:
-    explicit Specialization(const std::vector<uint32_t>& constants);
+    /// Each constant of the interface must be given once, by its name, and no other; else throws Error naming `pass`.
+    Specialization(std::string_view pass, const ShaderInterface& interface, const Constants& constants);
     Specialization(const Specialization&) = delete;
     Specialization& operator=(const Specialization&) = delete;
     const VkSpecializationInfo* info() const { return &info_; }
 
   private:
     std::vector<VkSpecializationMapEntry> entries_;
+    std::vector<uint32_t> values_;
     VkSpecializationInfo info_{};
 };
 
@@ -67,9 +79,11 @@ class PassBase {
     VkShaderStageFlags stages() const { return stages_; }
 
   protected:
-    void create_layout();
-    /// Of the built-in shader of this name; adds what it declares to the interface.
-    VkShaderModule create_module(std::string_view shader);
+    /// Takes the built-in shader of this name as a stage: adds what it declares to the interface. Returns its number.
+    uint32_t add_stage(VkShaderStageFlagBits bit, std::string_view shader);
+    /// Makes the layout and the stages that were added, with their constants. The modules are to be destroyed.
+    std::vector<VkPipelineShaderStageCreateInfo> create_stages(const Constants& constants);
+    void destroy_modules(std::span<const VkPipelineShaderStageCreateInfo> stages);
 
     Device& device_;
     std::string name_;
@@ -78,12 +92,22 @@ class PassBase {
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
+
+  private:
+    struct Stage {
+        VkShaderStageFlagBits bit;
+        std::span<const uint32_t> code;
+    };
+    void create_layout();
+
+    std::vector<Stage> added_;
+    std::optional<Specialization> specialization_;
 };
 
 /// A compute pass (see Commands::run).
 class Pass : public PassBase {
   public:
-    Pass(Device& device, VkPipelineCache cache, std::string_view shader, const std::vector<uint32_t>& constants);
+    Pass(Device& device, VkPipelineCache cache, std::string_view shader, const Constants& constants);
 
     /// What the driver tells of the compiled shader (registers, spills, ...), as it calls it; empty where it tells
     /// nothing (DeviceFeatures::executable_properties).
@@ -97,8 +121,8 @@ struct RasterSetup {
     uint32_t patch_points = 0;  ///< corners of a patch, for FRONT.tesc and FRONT.tese; 0: triangles, no tessellation
     std::vector<VkFormat> colors = {VK_FORMAT_R32G32_UINT};  ///< of the targets; may be empty
     VkCompareOp depth = VK_COMPARE_OP_GREATER;               ///< of a D32 buffer; VK_COMPARE_OP_ALWAYS: there is none
-    bool overestimate = false;             ///< every pixel that a triangle touches (DeviceFeatures::overestimation)
-    std::vector<uint32_t> constants = {};  ///< specialisation constants 0, 1, … of all stages
+    bool overestimate = false;  ///< every pixel that a triangle touches (DeviceFeatures::overestimation)
+    Constants constants = {};   ///< of all stages
 
     auto operator<=>(const RasterSetup&) const = default;
 };

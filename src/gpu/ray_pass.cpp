@@ -16,14 +16,6 @@ uint64_t round_up(uint64_t value, uint64_t to) {
 RayPass::RayPass(Device& device, VkPipelineCache cache, std::string_view shader, const RaySetup& setup)
     : PassBase(device, std::string(shader)) {
     const std::string rays = setup.rays.empty() ? name_ : setup.rays;
-    const Specialization specialization(setup.constants);
-    std::vector<VkPipelineShaderStageCreateInfo> stages;
-    const auto add_stage = [&](VkShaderStageFlagBits bit, const std::string& file) {
-        stages_ |= bit;
-        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, bit, create_module(file),
-                          "main", specialization.info()});
-        return uint32_t(stages.size() - 1);
-    };
     VkRayTracingShaderGroupCreateInfoKHR groups[kGroups];
     for (auto& group : groups) {
         group = {VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR};
@@ -36,7 +28,7 @@ RayPass::RayPass(Device& device, VkPipelineCache cache, std::string_view shader,
     groups[2].type = VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR;
     if (setup.nearest) groups[2].closestHitShader = add_stage(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, rays + ".rchit");
     if (setup.any) groups[2].anyHitShader = add_stage(VK_SHADER_STAGE_ANY_HIT_BIT_KHR, rays + ".rahit");
-    create_layout();
+    const auto stages = create_stages(setup.constants);
 
     VkRayTracingPipelineCreateInfoKHR info{VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR};
     info.flags = VK_PIPELINE_CREATE_RAY_TRACING_NO_NULL_MISS_SHADERS_BIT_KHR;
@@ -51,7 +43,7 @@ RayPass::RayPass(Device& device, VkPipelineCache cache, std::string_view shader,
     info.layout = layout_;
     const VkResult result =
         device.vk.vkCreateRayTracingPipelinesKHR(device.handle, VK_NULL_HANDLE, cache, 1, &info, nullptr, &pipeline_);
-    for (const auto& stage : stages) device.vk.vkDestroyShaderModule(device.handle, stage.module, nullptr);
+    destroy_modules(stages);
     check_vulkan(result, "compiling the shader " + name_);
     create_table();
 }

@@ -8,10 +8,10 @@ namespace peelray {
 
 /// How a ray tracing pass is put together: every ray has the same shaders.
 struct RaySetup {
-    std::string rays;                      ///< name of the shaders of misses and hits; empty: the pass's own
-    bool nearest = true;                   ///< RAYS.rchit is told of the nearest hit
-    bool any = false;                      ///< RAYS.rahit is asked about hits on what is not opaque
-    std::vector<uint32_t> constants = {};  ///< specialisation constants 0, 1, … of all stages
+    std::string rays;          ///< name of the shaders of misses and hits; empty: the pass's own
+    bool nearest = true;       ///< RAYS.rchit is told of the nearest hit
+    bool any = false;          ///< RAYS.rahit is asked about hits on what is not opaque
+    Constants constants = {};  ///< of all stages
 
     auto operator<=>(const RaySetup&) const = default;
 };

@@ -2,13 +2,14 @@
 
 namespace peelray {
 
-const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, uint32_t constant) {
+const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, Constants constants) {
     RaySetup setup;
     setup.rays = rays == KhrRays::nearest ? "khr_nearest" : "khr_occluded";
     setup.nearest = rays == KhrRays::nearest;
     // Nearest hits are asked about where a ray meets the triangle that it leaves, too.
     setup.any = rays == KhrRays::nearest || masked;
-    setup.constants = {constant, masked};
+    setup.constants = std::move(constants);
+    if (setup.nearest) setup.constants.push_back({"masked", masked});
     return device.ray_pass(shader, setup);
 }
 
@@ -21,7 +22,8 @@ std::vector<Binding> khr_bindings(const RayPass& pass, const Structures& structu
 
 void record_khr_trace(Commands& commands, Device& device, const Structures& structures,
                       const TriangleBuffers& triangles, const RayQueue& queue, const Buffer& hits, bool any_hit) {
-    const RayPass& pass = khr_pass(device, "trace_khr", KhrRays::nearest, triangles.masks != nullptr, any_hit);
+    const RayPass& pass =
+        khr_pass(device, "trace_khr", KhrRays::nearest, triangles.masks != nullptr, {{"any_hit", any_hit}});
     const KhrTraceParams p{queue.count, queue.counters != nullptr, queue.counter, queue.skip != nullptr};
     const Binding bindings[] = {{"rays", queue.rays},
                                 {"skip", queue.skip ? *queue.skip : queue.rays},

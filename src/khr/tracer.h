@@ -17,8 +17,8 @@ enum class KhrRays : uint8_t {
     occluded,  ///< ask whether there is anything
 };
 
-/// The pass NAME.rgen for these rays; constant 0 is `constant`.
-const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, uint32_t constant);
+/// The pass NAME.rgen for these rays. `constants`: its own, beside those of the shaders of hits.
+const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, Constants constants = {});
 
 /// Those of `bindings` that the pass reads, and the structures.
 std::vector<Binding> khr_bindings(const RayPass& pass, const Structures& structures, std::span<const Binding> bindings);

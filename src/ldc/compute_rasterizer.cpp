@@ -31,11 +31,13 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"blocks", blocks_},
                                 {"corners", corners ? state.cubes.corners : state.cubes.body_table}};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
-    commands.run(device.pass("ldc_raster", {masked, small_pixels(p.triangles), corners}), bindings, p,
-                 groups_for(p.triangles, 64));
+    commands.run(
+        device.pass("ldc_raster",
+                    {{"masked", masked}, {"small_pixels", small_pixels(p.triangles)}, {"keeps_corners", corners}}),
+        bindings, p, groups_for(p.triangles, 64));
     if (p.block_capacity == 0) return;
     state.record_groups(commands);
-    const Pass& blocks = device.pass("ldc_raster_blocks", {masked});
+    const Pass& blocks = device.pass("ldc_raster_blocks", {{"masked", masked}});
     commands.run_indirect(blocks, declared(blocks, bindings), p, state.groups, LDC_GROUPS_BLOCKS * 12);
 }
 

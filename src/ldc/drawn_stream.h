@@ -14,12 +14,12 @@ namespace peelray {
 /// Triangles without area or with corners that are not finite are dropped; unlike those of buffers they are not
 /// counted.
 struct DrawnStream {
-    std::string front;                     ///< FRONT.vert, and FRONT.tesc and FRONT.tese with `patch_points`
-    std::string fragments;                 ///< FRAGMENTS.frag
-    uint32_t patch_points = 0;             ///< corners of a patch; 0: triangles
-    std::vector<Binding> bindings;         ///< of all its stages, from 8 on; must outlive the recording
-    std::vector<uint32_t> constants = {};  ///< specialisation constants 3, 4, … (0 to 2 are the library's)
-    const Buffer* arguments = nullptr;     ///< DrawArguments each, written by the host or on the GPU
+    std::string front;                  ///< FRONT.vert, and FRONT.tesc and FRONT.tese with `patch_points`
+    std::string fragments;              ///< FRAGMENTS.frag
+    uint32_t patch_points = 0;          ///< corners of a patch; 0: triangles
+    std::vector<Binding> bindings;      ///< of all its stages, from 8 on; must outlive the recording
+    Constants constants = {};           ///< of all its stages; the library's have none
+    const Buffer* arguments = nullptr;  ///< DrawArguments each, written by the host or on the GPU
     uint32_t draws = 1;
     uint32_t body = 0;  ///< whose cube it goes into: of the builder's
 };

@@ -44,7 +44,8 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
     result.setup.front = "ldc_route";
     if (geometry) result.setup.geometry = "ldc_route";
     result.setup.overestimate = overestimate;
-    result.setup.constants = {geometry, dilated, layered};
+    result.setup.constants = {{"by_geometry", geometry}, {"dilated", dilated}};
+    if (geometry) result.setup.constants.push_back({"layered", layered});
     result.vertices = dilated && !geometry ? 15 : 3;  // a triangle grown by a square has seven sides
     result.instances = geometry ? 1 : 3;
     return result;
@@ -52,7 +53,7 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
 
 RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles) {
     RasterSetup result = setup;
-    result.constants.push_back(state.tests_alpha(triangles));
+    result.constants.push_back({"masked", state.tests_alpha(triangles)});
     return result;
 }
 

@@ -66,7 +66,7 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"sums", sums_},
                            {"unsorted_ids", unsorted_ids_}},
                           p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(device.pass("ldc_pixel_sort", {streams}),
+    commands.run_indirect(device.pass("ldc_pixel_sort", {{"streams", streams}}),
                           {{"counters", state.counters},
                            {"fragments", state.fragments},
                            {"pixel_counts", pixel_counts_},
@@ -80,7 +80,7 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"captured", state.captured},
                            {"sample_attributes", state.cubes.sample_attributes}},
                           p, state.groups, LDC_GROUPS_FRAGMENTS * 12);
-    commands.run_indirect(device.pass("ldc_pixel_sort_long", {streams}),
+    commands.run_indirect(device.pass("ldc_pixel_sort_long", {{"streams", streams}}),
                           {{"counters", state.counters},
                            {"fragments", state.fragments},
                            {"pixel_counts", pixel_counts_},

@@ -38,8 +38,7 @@ void StreamRasterizer::record(Commands& commands, const BuildState& state, const
         setup.patch_points = stream.patch_points;
         setup.colors = {};
         setup.depth = VK_COMPARE_OP_ALWAYS;
-        setup.constants = {1, 0, 0};
-        setup.constants.insert(setup.constants.end(), stream.constants.begin(), stream.constants.end());
+        setup.constants = stream.constants;
         std::vector<Binding> bindings = {{"counters", state.counters},
                                          {"bodies", state.cubes.body_table},
                                          {"fragments", state.fragments},

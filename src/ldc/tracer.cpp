@@ -30,12 +30,26 @@ const char* name_of(HitTest test) {
     return "";
 }
 
-uint32_t shader_constant(Batch batch) {
-    return batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE;
+/// Those constants that the tracing of four rays by a thread has, too.
+static Constants walk_constants(const TracedScene& scene, HitTest test, bool counting) {
+    return {{"hit_test", uint32_t(test)},
+            {"traversal", uint32_t(scene.cubes.layout().traversal)},
+            {"masked", scene.triangles.masks && scene.cubes.tests_triangles()},
+            {"counting", counting}};
 }
 
-std::array<uint32_t, 2> instance_constants(const TracedScene& scene) {
-    return {scene.instances.count() <= 8 ? scene.instances.count() : 0, scene.instances.bare(scene.cubes)};
+Constants traversal_constants(const Device& device, const TracedScene& scene, HitTest test, bool counting) {
+    Constants constants = walk_constants(scene, test, counting);
+    const uint32_t instances = scene.instances.count();
+    constants.push_back({"instance_count", instances <= 8 ? instances : 0});
+    const CubeLayout& layout = scene.cubes.layout();
+    if (layout.by_pixel()) {
+        constants.push_back({"batch", layout.batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE});
+    } else {
+        constants.push_back({"bare_count", scene.instances.bare(scene.cubes)});
+        constants.push_back({"deferred", device.immediate});
+    }
+    return constants;
 }
 
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
@@ -53,18 +67,11 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     const HitTest test = options.test;
     assert(scene.cubes.sampling() == sampling_for(test));
     const CubeLayout& layout = scene.cubes.layout();
-    std::vector<uint32_t> constants = {options.any_hit,
-                                       uint32_t(test),
-                                       options.edges == Edges::precise && test == HitTest::exact,
-                                       uint32_t(layout.traversal),
-                                       scene.triangles.masks && scene.cubes.tests_triangles(),
-                                       queue.counting != nullptr};
-    const bool four = layout.by_pixel() && layout.batch == Batch::rays;
-    if (!four) {
-        const auto [instances, bare] = instance_constants(scene);
-        for (const uint32_t c : {shader_constant(layout.batch), instances, uint32_t(device.immediate), bare})
-            constants.push_back(c);
-    }
+    const bool four = layout.by_pixel() && layout.batch == Batch::rays, counting = queue.counting != nullptr;
+    Constants constants =
+        four ? walk_constants(scene, test, counting) : traversal_constants(device, scene, test, counting);
+    constants.push_back({"any_hit", options.any_hit});
+    constants.push_back({"precise_edges", options.edges == Edges::precise && test == HitTest::exact});
     const Pass& pass = device.pass(four ? "trace_four" : layout.by_pixel() ? "trace_pixels" : "trace", constants);
     TraceParams p{};
     p.tree = scene.instances.tree();

@@ -1,7 +1,6 @@
 // Tracing queues of rays in cubes.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "gpu/commands.h"
@@ -56,12 +55,9 @@ enum class Edges : uint8_t {
 /// has not. And `others`.
 std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others);
 
-/// Specialisation constant of the shaders that trace: what one ray does at a time, PEELRAY_ONE, ...
-uint32_t shader_constant(Batch batch);
-
-/// Specialisation constants of the shaders that trace: how many instances there are, up to 8 (0: more), and of how many
-/// of them the bodies are bare.
-std::array<uint32_t, 2> instance_constants(const TracedScene& scene);
+/// The constants of the traversal, which all shaders have that trace one ray at a time (trace, trace_pixels,
+/// trace_shadow*). `counting`: it is counted what rays cost.
+Constants traversal_constants(const Device& device, const TracedScene& scene, HitTest test, bool counting);
 
 /// The bindings of shaders/cube_fetch.glsl.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);

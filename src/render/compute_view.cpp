@@ -30,10 +30,10 @@ void ComputeView::record(Commands& commands, const GpuScene& scene, const ViewTa
                            {"blocks", blocks_}};
     const std::vector<Binding> bindings = with_alpha_test(own, scene.triangles);
     const ViewParams p{jitter, uint32_t(scene.drawn), capacity_};
-    const uint32_t masked = scene.triangles.masks != nullptr;
+    const bool masked = scene.triangles.masks != nullptr;
     commands.fill(target.visibility, ~0u);
-    commands.run(device_.pass("view_triangles", {masked}), bindings, p, groups_for(scene.drawn, 256));
-    commands.run_indirect(device_.pass("view_blocks", {masked}), bindings, p, queues.counters(),
+    commands.run(device_.pass("view_triangles", {{"masked", masked}}), bindings, p, groups_for(scene.drawn, 256));
+    commands.run_indirect(device_.pass("view_blocks", {{"masked", masked}}), bindings, p, queues.counters(),
                           PathQueues::groups_offset(QUEUE_GROUPS_VIEW));
 }
 

@@ -319,7 +319,7 @@ void Renderer::Impl::record_scatter(const LevelParams& p) {
                                                             {"shadow_light", queues.lights().light},
                                                             {"visibility", view.visibility},
                                                             {"draws", scene.draw_table}});
-    const Pass& pass = device.pass("scatter", {camera, camera && computes_view});
+    const Pass& pass = device.pass("scatter", {{"camera", camera}, {"by_number", camera && computes_view}});
     if (camera)
         commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else
@@ -364,7 +364,7 @@ void Renderer::Impl::record_shadows_khr() {
                                                             {"queue", queues.counters()}});
     const RayPass& pass =
         khr_pass(device, scene.has_glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
-                 scene.has_glass ? KhrRays::nearest : KhrRays::occluded, scene.triangles.masks != nullptr, 0);
+                 scene.has_glass ? KhrRays::nearest : KhrRays::occluded, scene.triangles.masks != nullptr);
     const RayQueue queue{lights.rays,
                          &lights.skip,
                          lights.capacity,
@@ -397,13 +397,9 @@ void Renderer::Impl::record_shadows() {
     } else {
         bindings = with_alpha_test(bindings, scene.triangles);
     }
-    const auto [instances, bare] = instance_constants(traced());
-    const Pass& pass =
-        device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
-                        (settings.layout.by_pixel() ? "_pixels" : ""),
-                    {uint32_t(hit), uint32_t(settings.layout.traversal), shader_constant(settings.layout.batch),
-                     scene.triangles.masks && cubes->cubes().tests_triangles(), instances, device.immediate,
-                     counter != nullptr, bare});
+    const Pass& pass = device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
+                                       (settings.layout.by_pixel() ? "_pixels" : ""),
+                                   traversal_constants(device, traced(), hit, counter != nullptr));
     commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(),
                           PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }

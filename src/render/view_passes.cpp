@@ -29,7 +29,7 @@ std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame
 void record_primary(Commands& commands, Device& device, const GpuScene& scene, const ViewTarget& target,
                     PathQueues& queues, const LevelParams& params, bool by_number) {
     const PathLevel& level = queues.level(0);
-    commands.run(device.pass("primary", {by_number}),
+    commands.run(device.pass("primary", {{"by_number", by_number}}),
                  {{"frame", target.frame},
                   {"positions", scene.triangles.positions},
                   {"triangles", scene.triangles.triangles},

@@ -20,7 +20,8 @@ class CommandsTest : public ProbeTest {
                        groups_for(count, 64));
     }
     void add(const Buffer& data, uint32_t count, uint32_t step) {
-        commands().run(device().pass("probe_add"), {{"data", data}}, Add{count, step}, groups_for(count, 64));
+        commands().run(device().pass("probe_add", {{"factor", 1}}), {{"data", data}}, Add{count, step},
+                       groups_for(count, 64));
     }
 };
 
@@ -148,11 +149,39 @@ TEST_F(CommandsTest, OrderOfBindingsDoesNotMatter) {
 }
 
 TEST_F(CommandsTest, ConstantsMakePassesOfTheirOwn) {
-    EXPECT_NE(&device().pass("probe_add"), &device().pass("probe_add", {3}));
-    EXPECT_EQ(&device().pass("probe_add", {3}), &device().pass("probe_add", {3}));
+    EXPECT_NE(&device().pass("probe_add", {{"factor", 1}}), &device().pass("probe_add", {{"factor", 3}}));
+    EXPECT_EQ(&device().pass("probe_add", {{"factor", 3}}), &device().pass("probe_add", {{"factor", 3}}));
     const Buffer a = upload(std::vector<uint32_t>(64, 1));
-    commands().run(device().pass("probe_add", {3}), {{"data", a}}, Add{64, 10}, {1});
+    commands().run(device().pass("probe_add", {{"factor", 3}}), {{"data", a}}, Add{64, 10}, {1});
     EXPECT_EQ(download<uint32_t>(a, 64), std::vector<uint32_t>(64, 31));
+}
+
+TEST_F(CommandsTest, ConstantsAreMatchedByTheirNames) {
+    // The order in which they are given means nothing, and neither do their numbers in the shader.
+    for (const Constants& constants : {Constants{{"factor", 3}, {"offset", 100}, {"twice", 1}},
+                                       Constants{{"twice", 1}, {"offset", 100}, {"factor", 3}}}) {
+        const Buffer a = upload(std::vector<uint32_t>(64, 1));
+        commands().run(device().pass("probe_constants", constants), {{"data", a}}, Add{64, 10}, {1});
+        EXPECT_EQ(download<uint32_t>(a, 64), std::vector<uint32_t>(64, 1 + 2 * (10 * 3 + 100)));
+    }
+    const auto& declared = device().pass("probe_constants", {{"factor", 1}, {"offset", 0}, {"twice", 0}}).interface();
+    EXPECT_EQ(declared.constants.size(), 3u) << "what no code uses is none";
+    for (const auto& [name, id] : declared.constants)
+        EXPECT_EQ(id, name == "factor" ? 7u : name == "offset" ? 2u : 4u) << name;
+}
+
+TEST_F(CommandsTest, ConstantsAreChecked) {
+    const std::string name = "probe_constants";
+    const auto refused = [&](const Constants& constants, std::initializer_list<std::string> parts) {
+        expect_error([&] { device().pass(name, constants); }, parts);
+        expect_error([&] { device().pass(name, constants); }, parts);  // no half-made pass is kept
+    };
+    refused({}, {name, "not given", "'"});
+    refused({{"factor", 3}, {"offset", 1}}, {name, "not given", "'twice'"});
+    refused({{"factor", 3}, {"offset", 1}, {"twice", 0}, {"thrice", 1}}, {name, "no constant", "'thrice'"});
+    refused({{"factor", 3}, {"offset", 1}, {"twice", 0}, {"unused", 1}}, {name, "no constant", "'unused'"});
+    refused({{"factor", 3}, {"offset", 1}, {"twice", 0}, {"factor", 3}}, {name, "'factor'", "twice"});
+    refused({{"factor", 3}, {"factor", 3}, {"offset", 1}}, {name, "'factor'", "twice"});
 }
 
 TEST_F(CommandsTest, IndirectRunsReadTheirCountsOnTheGpu) {
@@ -160,10 +189,10 @@ TEST_F(CommandsTest, IndirectRunsReadTheirCountsOnTheGpu) {
     const Buffer a = upload(std::vector<uint32_t>(1000, 1)), from = upload(std::vector<uint32_t>{0, 0, 0, 2, 0, 0}),
                  arguments(device(), "arguments", 24);
     rotate(from, arguments, 6, 0, 1);  // 1 1 1, 3 1 1
-    commands().run_indirect(device().pass("probe_add"), {{"data", a}}, Add{1000, 1}, arguments);
-    commands().run_indirect(device().pass("probe_add"), {{"data", a}}, Add{1000, 10}, arguments, 12);
+    commands().run_indirect(device().pass("probe_add", {{"factor", 1}}), {{"data", a}}, Add{1000, 1}, arguments);
+    commands().run_indirect(device().pass("probe_add", {{"factor", 1}}), {{"data", a}}, Add{1000, 10}, arguments, 12);
     commands().fill(arguments, 0);  // must wait for both
-    commands().run_indirect(device().pass("probe_add"), {{"data", a}}, Add{1000, 100}, arguments);
+    commands().run_indirect(device().pass("probe_add", {{"factor", 1}}), {{"data", a}}, Add{1000, 100}, arguments);
     const auto result = download<uint32_t>(a, 1000);
     for (uint32_t i = 0; i < 1000; i++) ASSERT_EQ(result[i], i < 64 ? 12u : i < 192 ? 11u : 1u) << i;
 }
@@ -240,7 +269,7 @@ TEST_F(CommandsTest, OneRecordingMayHoldMorePassesThanAnyPool) {
 
 TEST_F(CommandsTest, AnEmptyDispatchIsAllowed) {
     const Buffer a = upload(std::vector<uint32_t>(64, 1));
-    commands().run(device().pass("probe_add"), {{"data", a}}, Add{0, 1}, groups_for(0, 64));
+    commands().run(device().pass("probe_add", {{"factor", 1}}), {{"data", a}}, Add{0, 1}, groups_for(0, 64));
     EXPECT_EQ(download<uint32_t>(a, 64), std::vector<uint32_t>(64, 1));
     EXPECT_EQ(groups_for(1, 64).x, 1u);
     EXPECT_EQ(groups_for(64, 64).x, 1u);
@@ -265,7 +294,8 @@ TEST_F(CommandsTest, ReflectionSeesAccessNamesAndSizes) {
     EXPECT_EQ(reduce.bindings.size(), 3u);
     EXPECT_EQ(reduce.push_constant_bytes, sizeof(ScanParams));
     EXPECT_EQ(reduce.group_size[0], 256u);
-    EXPECT_EQ(device().pass("ldc_raster").interface().push_constant_bytes, sizeof(LdcParams));
+    const Constants raster = {{"masked", 0}, {"small_pixels", 48}, {"keeps_corners", 0}};
+    EXPECT_EQ(device().pass("ldc_raster", raster).interface().push_constant_bytes, sizeof(LdcParams));
     // Every shader of the library must fit what Commands binds with.
     for (const auto& shader : peelray_shaders()) {
         ShaderInterface interface;

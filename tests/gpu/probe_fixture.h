@@ -28,8 +28,7 @@ class ProbeTest : public DeviceTest {
 
     /// outputs[i] = probe(inputs[i]). Out and In must be what the shader declares (scalar layout: no padding).
     template <typename Out, typename In>
-    std::vector<Out> probe(std::string_view shader, const std::vector<In>& inputs,
-                           const std::vector<uint32_t>& constants = {}) {
+    std::vector<Out> probe(std::string_view shader, const std::vector<In>& inputs, const Constants& constants = {}) {
         const Buffer in = upload(inputs), out(device(), "probe results", inputs.size() * sizeof(Out));
         commands().run(device().pass(shader, constants), {{"inputs", in}, {"outputs", out}}, uint32_t(inputs.size()),
                        groups_for(inputs.size(), 64));

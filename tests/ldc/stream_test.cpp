@@ -92,7 +92,7 @@ TEST_F(StreamTest, GivesTheCubeOfTheSameTriangles) {
         layout.streams = true;
         Cubes cubes(device(), bodies, sampling, layout);
         CubeBuilder builder(device(), commands(), cubes, 0, 1);
-        builder.set_streams({{"stream_wave", "stream_holes", 4, {}, {kLevel}, &patches, 2, 0},
+        builder.set_streams({{"stream_wave", "stream_holes", 4, {}, {{"LEVEL", kLevel}}, &patches, 2, 0},
                              {"stream_ribbons", "stream_holes", 0, {{"places", places}}, {}, &ribbons, 2, 0}});
         builder.build(commands(), triangles);
 
