@@ -1,7 +1,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene_files.h"
+#include "loaders/scene_files.h"
 
 namespace peelray::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "loaders/load.h"
-#include "scene_files.h"
+#include "loaders/scene_files.h"
 
 namespace peelray::testing {
 namespace {

@@ -1,7 +1,7 @@
 // Animations of glTF files: what bad ones say, and what odd ones mean.
 #include <set>
 
-#include "animated_files.h"
+#include "loaders/animated_files.h"
 #include "motion/animation.h"
 
 namespace peelray::testing {

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "loaders/load.h"
-#include "scene_files.h"
+#include "loaders/scene_files.h"
 
 namespace peelray::testing {
 namespace {

@@ -1,5 +1,5 @@
 // Morph targets of glTF files: what bad ones say, and what odd ones mean.
-#include "animated_files.h"
+#include "loaders/animated_files.h"
 
 namespace peelray::testing {
 namespace {

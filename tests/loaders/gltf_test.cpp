@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "loaders/load.h"
+#include "loaders/scene_files.h"
 #include "motion/animation.h"
 #include "scene/alpha_test.h"
-#include "scene_files.h"
 
 namespace peelray::testing {
 namespace {

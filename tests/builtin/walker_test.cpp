@@ -7,8 +7,8 @@
 
 #include "builtin/walker.h"
 #include "loaders/load.h"
+#include "loaders/scene_files.h"
 #include "motion/animation.h"
-#include "scene_files.h"
 
 namespace peelray::testing {
 namespace {

@@ -7,9 +7,10 @@
 #include <set>
 #include <sstream>
 
+#include "loaders/damage.h"
 #include "loaders/load.h"
+#include "loaders/scene_files.h"
 #include "motion/animation.h"
-#include "scene_files.h"
 
 namespace peelray::testing {
 namespace {
@@ -121,6 +122,23 @@ TEST(Sweep, BrokenModelsLoadOrGiveOneLine) {
     EXPECT_GT(loaded + refused, 150);
 }
 
+TEST(Sweep, DamageIsDoneAndAnEmptyFileStaysEmpty) {
+    Damage damage;
+    const std::string good(1000, '-');
+    int cut = 0;
+    for (int round = 0; round < 100; ++round) {
+        const std::string bad = damage(good);
+        cut += bad.size() < good.size();
+        if (bad.size() == good.size()) {
+            EXPECT_NE(bad, good);
+        }
+        EXPECT_LE(bad.size(), good.size());
+        EXPECT_EQ(damage(""), "");
+    }
+    EXPECT_GT(cut, 5);
+    EXPECT_LT(cut, 25);
+}
+
 /// The same, with bytes of good files overwritten and files cut, at places that a fixed generator picks.
 TEST(Sweep, DamagedModelsLoadOrGiveOneLine) {
     const fs::path models = PEELRAY_MODELS;
@@ -138,19 +156,13 @@ TEST(Sweep, DamagedModelsLoadOrGiveOneLine) {
                                             "malformed/assimp/PLY/float-color.ply"};
     if (!fs::exists(models / names[0])) GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
     const TempFolder folder;
-    uint64_t state = 1;
-    const auto random = [&](size_t below) {
-        state = state * 6364136223846793005ull + 1442695040888963407ull;
-        return static_cast<size_t>(state >> 33) % below;
-    };
+    Damage damage;
     for (const std::string& name : names) {
         std::ifstream stream(models / name, std::ios::binary);
         const std::string good((std::istreambuf_iterator<char>(stream)), {});
+        EXPECT_FALSE(good.empty()) << name << " is an empty file: nothing can be damaged in it";
         for (int round = 0; round < 300; ++round) {
-            std::string bad = good;
-            for (size_t i = 0; i <= random(6); ++i)
-                bad[random(bad.size())] = static_cast<char>(random(3) ? '0' + random(10) : random(256));
-            if (random(8) == 0) bad.resize(random(bad.size()));
+            const std::string bad = damage(good);
             SCOPED_TRACE(name + " round " + std::to_string(round));
             try {
                 show_all(load_scene(folder.write("bad" + fs::path(name).extension().string(), bad)));

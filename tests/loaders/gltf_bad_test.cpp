@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene_files.h"
+#include "loaders/scene_files.h"
 
 namespace peelray::testing {
 namespace {

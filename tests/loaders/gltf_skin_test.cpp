@@ -1,5 +1,5 @@
 // Skins of glTF files: what bad ones say, and what odd ones mean.
-#include "animated_files.h"
+#include "loaders/animated_files.h"
 #include "motion/animation.h"
 
 namespace peelray::testing {

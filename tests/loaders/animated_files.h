@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loaders/scene_files.h"
 #include "motion/animation.h"
-#include "scene_files.h"
 
 namespace peelray::testing {
 

@@ -5,9 +5,9 @@
 
 #include "builtin/builtin.h"
 #include "loaders/load.h"
+#include "loaders/scene_files.h"
 #include "motion/animation.h"
 #include "scene/alpha_test.h"
-#include "scene_files.h"
 
 namespace peelray::testing {
 namespace {
