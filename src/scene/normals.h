@@ -13,6 +13,10 @@ void make_flat(Primitive& primitive);
 /// their order.
 void make_smooth(Primitive& primitive, float crease);
 
+/// The same for the vertices whose normal is missing (no normals at all, or a zero vector); those that there are, which
+/// are unit, stay. Vertices that agree in every attribute are joined, unused ones dropped.
+void complete_normals(Primitive& primitive, float crease);
+
 /// Merges vertices that agree in every attribute. Triangles keep their order.
 void weld(Primitive& primitive);
 
