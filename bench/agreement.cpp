@@ -70,7 +70,8 @@ class Bench {
           oracle_(oracle),
           test_(test),
           commands_(device),
-          scene_(device, scene, assemble(scene, motion_of(scene, "")), {ldc, test, false}) {
+          scene_(device, scene, at_rest(scene), assemble(scene, at_rest(scene), motion_of(scene, "")),
+                 {ldc, test, false}) {
         for (const LdcBody& body : scene_.download_bodies(commands_)) voxel_ = std::max(voxel_, body.grid.voxel);
     }
 

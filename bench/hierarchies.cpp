@@ -76,7 +76,8 @@ Json measure(Device& device, const std::string& name, const Options& options) {
             CubeChoice choice;
             choice.ldc = options.ldc;
             choice.layout.traversal = traversal;
-            RayScene cubes(device, scene, assemble(scene, motion_of(scene, "")), choice);
+            const Moment rest = at_rest(scene);
+            RayScene cubes(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), choice);
             size_t found = 0;
             const double ms = trace_on_gpu(device, cubes, rays, options.repeat, found);
             row[name_of(traversal)] = {{"build_ms", cubes.build_ms()}, {"mrays_per_second", rate(ms)}, {"hits", found}};

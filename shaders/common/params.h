@@ -33,8 +33,8 @@ SHARED_SIZE(LdcBody, 64);
 /// Of LdcBody::resolution: the body has no cube, its triangles are tested one by one (PEELRAY_BARE).
 #define LDC_BARE 0x80000000u
 
-/// The corners of a triangle of a body from the grid's origin, in the units of the body's space: what `exact` hits by voxel are tested
-/// against, in three blocks that GPUs load at once.
+/// The corners of a triangle of a body from the grid's origin, in the units of the body's space: what `exact` hits by
+/// voxel are tested against, in three blocks that GPUs load at once.
 struct LdcCorners {
     vec4 a_bx, byz_cxy, cz_normal;  ///< and the normal, not normalised (ldcNormal)
 };
@@ -59,11 +59,11 @@ struct LdcParams {
     uint fragment_capacity;
     uint block_capacity;  ///< entries of the queue of blocks of large triangles
     uint long_capacity;   ///< entries of the queue of long lists; by pixel
-    uint axis;           ///< of ldc_sat_scan
-    uint block;          ///< of ldc_ranges: pixels of a block along u, and along v << 16
-    uint level;          ///< of ldc_ranges_up; of ldc_peel: passes before this one
-    uint viewport;       ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
-    uint side;           ///< of peeling: pixels along a side of the targets
+    uint axis;            ///< of ldc_sat_scan
+    uint block;           ///< of ldc_ranges: pixels of a block along u, and along v << 16
+    uint level;           ///< of ldc_ranges_up; of ldc_peel: passes before this one
+    uint viewport;        ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
+    uint side;            ///< of peeling: pixels along a side of the targets
 };
 SHARED_SIZE(LdcParams, 84);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
@@ -73,17 +73,18 @@ SHARED_SIZE(LdcParams, 84);
 /// Counted on the GPU while building; whatever exceeds a capacity makes the host grow it and build again.
 struct LdcCounters {
     uint fragments;  ///< samples
-    uint blocks;    ///< of 32x32 pixels, of large triangles
-    uint listed;    ///< samples that are in lists; by voxel
-    uint cells;     ///< 16x16x16 cells, or pixels
-    uint occupied;  ///< of them occupied
-    uint nodes;     ///< occupied 4x4x4 nodes
-    uint voxels;    ///< occupied voxels
+    uint blocks;     ///< of 32x32 pixels, of large triangles
+    uint listed;     ///< samples that are in lists; by voxel
+    uint cells;      ///< 16x16x16 cells, or pixels
+    uint occupied;   ///< of them occupied
+    uint nodes;      ///< occupied 4x4x4 nodes
+    uint voxels;     ///< occupied voxels
     uint long_lists;
     uint longest;     ///< samples of the longest list; by pixel: the depth complexity
     uint degenerate;  ///< triangles without area: dropped
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
-    uint wrapped;     ///< bit 0: more fragments than 32 bits count; 1: cells or pixels; 2: a tolerance beyond what by-voxel samples hold
+    uint wrapped;     ///< bit 0: more fragments than 32 bits count; 1: cells or pixels; 2: a tolerance beyond what
+                      ///< by-voxel samples hold
     uvec3 lines;      ///< of ldc_sat_scan along x, y, z
     uint complexity;  ///< of peeling: the depth complexity, largest of all bodies
     uint passes;      ///< of peeling: made for all bodies
@@ -355,9 +356,9 @@ struct KhrInstance {
     vec4 row_x;  ///< of the way from the body's space into the world
     vec4 row_y;
     vec4 row_z;
-    uint part_and_mask;      ///< 24 bits: KhrBody::first_part; 8: the rays that see it
-    uint offset_and_flags;   ///< 24 bits: of its hit shaders; 8: VkGeometryInstanceFlagsKHR
-    uvec2 structure;         ///< its address; 0: nothing is there
+    uint part_and_mask;     ///< 24 bits: KhrBody::first_part; 8: the rays that see it
+    uint offset_and_flags;  ///< 24 bits: of its hit shaders; 8: VkGeometryInstanceFlagsKHR
+    uvec2 structure;        ///< its address; 0: nothing is there
 };
 SHARED_SIZE(KhrInstance, 64);
 

@@ -42,8 +42,9 @@ SWARM_FUNCTION mat3 swarmTurn(vec3 axis, float angle) {
                 vec3(axis.x * axis.z * d + axis.y * s, axis.y * axis.z * d - axis.x * s, c + axis.z * axis.z * d));
 }
 
-/// Where body number `body` is at `phase` of the swarm's period, [0, 1). A body is of radius 1 before it is scaled. It is shot
-/// up from the fountain's mouth, falls onto the ground y = 0, bounces with less speed each time, rolls out and shrinks away.
+/// Where body number `body` is at `phase` of the swarm's period, [0, 1). A body is of radius 1 before it is scaled. It
+/// is shot up from the fountain's mouth, falls onto the ground y = 0, bounces with less speed each time, rolls out and
+/// shrinks away.
 SWARM_FUNCTION SwarmPlace swarmPlace(uint body, float phase) {
 #ifdef __cplusplus
     using glm::clamp;

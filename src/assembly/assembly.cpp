@@ -46,8 +46,8 @@ Part part_of(const Primitive& primitive, const Deformed& vertices) {
 
 class Assembler {
   public:
-    Assembler(const Scene& scene, const Motion& motion)
-        : scene_(scene), motion_(motion), worlds_(world_matrices(scene)), still_(scene.nodes.size()) {
+    Assembler(const Scene& scene, const Moment& moment, const Motion& motion)
+        : scene_(scene), moment_(moment), motion_(motion), worlds_(moment.worlds), still_(scene.nodes.size()) {
         find_generated();
         find_anchors();
         number_triangles();
@@ -87,10 +87,11 @@ class Assembler {
     void find_anchors() {
         for (size_t i = 0; i < scene_.nodes.size(); i++) {
             const Node& node = scene_.nodes[i];
+            const glm::mat4& local = moment_.locals[i];
             const auto parent = size_t(node.parent);
             still_[i] = node.parent < 0
-                            ? Still{-1, false, node.local}
-                            : Still{still_[parent].anchor, still_[parent].scaled, still_[parent].offset * node.local};
+                            ? Still{-1, false, local}
+                            : Still{still_[parent].anchor, still_[parent].scaled, still_[parent].offset * local};
             if (motion_.moves[i]) still_[i] = {int(i), still_[i].scaled || motion_.scales[i], glm::mat4(1)};
             // What stands in the world needs no detour.
             if (still_[i].anchor < 0) still_[i].offset = worlds_[i];
@@ -246,13 +247,16 @@ class Assembler {
         const bool skinned = node.skin >= 0 && !primitive.joints.empty();
         // A skin's joints speak of the world; nothing of it moves.
         const glm::mat4& matrix = skinned ? worlds_[size_t(place.node)] : still_[size_t(place.node)].offset;
-        if (is_rigid(primitive, node)) return transformed(primitive, matrix);
-        return deform(scene_, node, primitive, weights_of(place.node), worlds_, matrix);
+        if (is_rigid(primitive, node) && !moment_.surface_of(place.node)) return transformed(primitive, matrix);
+        return deformed(place, matrix);
     }
 
-    const std::vector<float>& weights_of(int node) const {
-        const std::vector<float>& own = scene_.nodes[size_t(node)].weights;
-        return own.empty() ? mesh_of(node).weights : own;
+    Deformed deformed(const Place& place, const glm::mat4& matrix) const {
+        const auto node = size_t(place.node);
+        if (const Moment::Surface* surface = moment_.surface_of(place.node))
+            return transformed(with_surface(primitive_of(place), *surface), matrix);
+        return deform(scene_, scene_.nodes[node], primitive_of(place), weights_of(scene_, moment_, node), worlds_,
+                      matrix);
     }
 
     uint32_t first_id(const Place& place) const { return first_ids_[size_t(place.node)][place.primitive]; }
@@ -292,10 +296,7 @@ class Assembler {
                 out_.waters[size_t(std::find(waters_.begin(), waters_.end(), place.node) - waters_.begin())] = piece;
             else
                 out_.pieces.push_back(piece);
-            append(place,
-                   deform(scene_, scene_.nodes[size_t(place.node)], primitive_of(place), weights_of(place.node),
-                          worlds_, worlds_[size_t(place.node)]),
-                   first_id(place), objects_[size_t(place.node)]);
+            append(place, deformed(place, worlds_[size_t(place.node)]), first_id(place), objects_[size_t(place.node)]);
         }
         out_.instances.push_back({body, -1, glm::mat4(1), 0, 0});
     }
@@ -307,8 +308,9 @@ class Assembler {
     };
 
     const Scene& scene_;
+    const Moment& moment_;
     const Motion& motion_;
-    const std::vector<glm::mat4> worlds_;
+    const std::vector<glm::mat4>& worlds_;
     std::vector<Still> still_;
     std::vector<std::vector<uint32_t>> first_ids_;
     std::vector<uint32_t> objects_;
@@ -336,8 +338,8 @@ uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_e
     return uint32_t(std::clamp(std::ceil(voxels / 16), 1.0, 64.0)) * 16;
 }
 
-Assembly assemble(const Scene& scene, const Motion& motion) {
-    return Assembler(scene, motion).take();
+Assembly assemble(const Scene& scene, const Moment& moment, const Motion& motion) {
+    return Assembler(scene, moment, motion).take();
 }
 
 }  // namespace peelray

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "motion/motion.h"
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 namespace peelray {
 
@@ -11,7 +11,7 @@ namespace peelray {
 struct Assembly {
     struct Body {
         uint32_t first_triangle = 0, triangles = 0, first_vertex = 0, vertices = 0;
-        glm::vec3 lower{0}, upper{0};  ///< in its own space; of one that deforms: in the scene's present moment
+        glm::vec3 lower{0}, upper{0};  ///< in its own space; of one that deforms: in the moment it was assembled at
         double inverse_edges = 0;      ///< sum of 1 / mean_edge() over its triangles, for serving_resolution
     };
 
@@ -31,7 +31,7 @@ struct Assembly {
         uint32_t body = 0, first_vertex = 0, first_triangle = 0;
     };
 
-    std::vector<glm::vec3> positions, normals;  ///< one per vertex; of bodies that deform: of the present moment
+    std::vector<glm::vec3> positions, normals;  ///< one per vertex; of bodies that deform: of the moment of assembly
     std::vector<glm::vec2> uvs;
     std::vector<glm::vec4> colors;  ///< or empty: no primitive has colours
     std::vector<glm::uvec3> triangles;
@@ -55,11 +55,11 @@ double mean_edge(uint64_t triangles, double area);
 /// Exact hits do not depend on it: it is chosen for speed. One that is built for every frame is the coarser for it.
 uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt = false);
 
-/// Takes the scene apart so that as little as possible has to be rebuilt for every moment of `motion` (the paper,
-/// section 1.2.1): what stands still, and what moves as one without changing its shape, goes into bodies that are built
-/// once; equal meshes share one where that pays; a body is split where a part of it would get much finer voxels
-/// from a cube of its own, so that a large ground does not cost a small object its resolution. Throws Error as
+/// Takes the scene at a moment apart so that as little as possible has to be rebuilt for every moment of `motion` (the
+/// paper, section 1.2.1): what stands still, and what moves as one without changing its shape, goes into bodies that
+/// are built once; equal meshes share one where that pays; a body is split where a part of it would get much finer
+/// voxels from a cube of its own, so that a large ground does not cost a small object its resolution. Throws Error as
 /// flatten() does.
-Assembly assemble(const Scene& scene, const Motion& motion);
+Assembly assemble(const Scene& scene, const Moment& moment, const Motion& motion);
 
 }  // namespace peelray

@@ -23,7 +23,8 @@ struct Judgement {
 };
 
 /// Judges up to `most` answers, spread evenly over the set, on all cores.
-/// - Claim::exact: Oracle::check, none may be wrong, by the rule of docs/accuracy.md, "Rays" (the answer of a ray within
+/// - Claim::exact: Oracle::check, none may be wrong, by the rule of docs/accuracy.md, "Rays" (the answer of a ray
+/// within
 ///   2·10⁻⁶ of the diagonal, to 10⁻⁵).
 /// - Claim::single: the same, one in 10,000 may be: single precision decides wrongly at some edges.
 /// - Claim::voxel: hits must lie within a voxel of the right one, or of that of a parallel ray at most a voxel beside.

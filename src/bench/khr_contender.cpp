@@ -3,20 +3,20 @@
 namespace peelray {
 namespace {
 
-std::unique_ptr<RayScene> make_scene(Device& device, const Scene& scene, const Assembly& assembly,
+std::unique_ptr<RayScene> make_scene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
                                      StructureUpdate update) {
     CubeChoice choice;
     choice.hit = HitTest::planar;  // of cubes that are never built
-    return std::make_unique<RayScene>(device, scene, assembly, choice, update);
+    return std::make_unique<RayScene>(device, scene, moment, assembly, choice, update);
 }
 
 }  // namespace
 
-KhrContender::KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
-                           StructureUpdate update)
-    : GpuContender(device, probe), source_(scene), assembly_(assembly), update_(update) {
+KhrContender::KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Moment& moment,
+                           const Assembly& assembly, StructureUpdate update)
+    : GpuContender(device, probe), source_(scene), moment_(moment), assembly_(assembly), update_(update) {
     device.check_ray_tracing();
-    scene_ = make_scene(device, scene, assembly, update);
+    scene_ = make_scene(device, scene, moment, assembly, update);
 }
 
 Timing KhrContender::time_build(uint32_t runs) {
@@ -28,7 +28,7 @@ Timing KhrContender::time_build(uint32_t runs) {
 Timing KhrContender::time_refit(uint32_t runs) {
     if (update_ == StructureUpdate::keep) return {};
     std::unique_ptr<RayScene> rebuilt = std::move(scene_);
-    scene_ = make_scene(device_, source_, assembly_, StructureUpdate::refit);
+    scene_ = make_scene(device_, source_, moment_, assembly_, StructureUpdate::refit);
     const Timing timing = GpuContender::time_build(runs);
     scene_ = std::move(rebuilt);
     return timing;

@@ -8,9 +8,10 @@ namespace peelray {
 
 class KhrContender : public GpuContender {
   public:
-    /// The scene in its present moment. `update`: how its structures are built, and whether they are at all once they
-    /// stand (StructureUpdate::keep). Throws Error where the device has no ray tracing or the scene does not fit it.
-    KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
+    /// The scene at a moment, which is that of its assembly. `update`: how its structures are built, and whether they
+    /// are at all once they stand (StructureUpdate::keep). Throws Error where the device has no ray tracing or the
+    /// scene does not fit it.
+    KhrContender(Device& device, ClockProbe& probe, const Scene& scene, const Moment& moment, const Assembly& assembly,
                  StructureUpdate update);
 
     Claim claim() const override { return Claim::single; }
@@ -30,6 +31,7 @@ class KhrContender : public GpuContender {
 
   private:
     const Scene& source_;
+    const Moment& moment_;
     const Assembly& assembly_;
     StructureUpdate update_;
     std::unique_ptr<RayScene> scene_;

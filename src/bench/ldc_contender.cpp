@@ -14,11 +14,11 @@ CubeChoice rebuilt(CubeChoice choice) {
 
 }  // namespace
 
-LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly,
-                           CubeChoice choice)
-    : GpuContender(device, probe), scene_(device, scene, assembly, rebuilt(choice)) {
+LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Moment& moment,
+                           const Assembly& assembly, CubeChoice choice)
+    : GpuContender(device, probe), scene_(device, scene, moment, assembly, rebuilt(choice)) {
     const std::vector<LdcBody> bodies = scene_.download_bodies(commands_);
-    const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, world_matrices(scene));
+    const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, moment.worlds);
     if (choice.hit != HitTest::exact) voxels_.resize(assembly.shown);
     for (size_t i = 0; i < assembly.instances.size(); i++) {
         const Assembly::Instance& instance = assembly.instances[i];

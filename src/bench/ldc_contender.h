@@ -8,9 +8,10 @@ namespace peelray {
 
 class LdcContender : public GpuContender {
   public:
-    /// The scene in its present moment. `choice`: every cube is rebuilt, whatever it says. Throws Error where it does
-    /// not fit the device.
-    LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Assembly& assembly, CubeChoice choice);
+    /// The scene at a moment, which is that of its assembly. `choice`: every cube is rebuilt, whatever it says. Throws
+    /// Error where it does not fit the device.
+    LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Moment& moment, const Assembly& assembly,
+                 CubeChoice choice);
 
     Claim claim() const override;
     float start_offset(uint32_t triangle) const override;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "builtin/shapes.h"
+#include "motion/simulation.h"
 
 namespace peelray {
 namespace {
@@ -85,7 +86,7 @@ Scene make_particles(uint64_t count) {
     scene.generated.animation = 0;
     scene.generated.reach = {{-6, -0.1f, -6}, {6, 3, 6}};
     scene.animations.push_back({"fountain", 6, {}});
-    simulate(scene);
+    settle(scene);
     return scene;
 }
 

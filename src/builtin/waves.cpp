@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "builtin/shapes.h"
+#include "motion/simulation.h"
 
 namespace peelray {
 namespace {
@@ -156,7 +157,7 @@ Scene make_waves(uint64_t triangles) {
     scene.generated.reach = {{-kPool / 2 - 0.35f, -kDepth, -kPool / 2 - 0.35f},
                              {kPool / 2 + 0.35f, kRim + 1.7f, kPool / 2 + 0.35f}};
     scene.animations.push_back({"waves", INFINITY, {}});
-    simulate(scene);
+    settle(scene);
     return scene;
 }
 

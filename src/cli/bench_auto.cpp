@@ -160,7 +160,8 @@ void AutoCheck::measure(const std::string& name, Progress& bar) {
     try {
         PreparedScene scene = prepare_scene(choice.picture);
         row.triangles = scene.triangles;
-        Renderer renderer(device_, scene.scene, assemble(scene.scene, motion_of(scene.scene, scene.animation)),
+        Renderer renderer(device_, scene.scene, scene.moment,
+                          assemble(scene.scene, scene.moment, motion_of(scene.scene, scene.animation)),
                           scene.environment);
         for (const bool rebuilt : {true, false}) {
             AutoRow each = row;

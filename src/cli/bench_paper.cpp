@@ -116,7 +116,7 @@ class BenchScene {
   private:
     std::vector<MadePicture> render(const RenderSettings& settings, const std::function<void(double)>& progress);
     uint32_t object_pixels(const std::vector<LdcBody>& bodies) const;
-    MadePicture make(RenderSettings settings, uint32_t warm_up, const Moment& moment,
+    MadePicture make(RenderSettings settings, uint32_t warm_up, const Shot& shot,
                      const std::function<void(double)>& progress);
 
     PictureArguments arguments_;
@@ -151,11 +151,11 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const s
 }
 
 /// The picture of one moment with the times of `settings.repeat` frames, those that warm up left out.
-MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Moment& moment,
+MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Shot& shot,
                              const std::function<void(double)>& progress) {
     const uint32_t frames = settings.repeat;
     if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
-    MadePicture made = maker_->make("ldc", settings, moment, progress);
+    MadePicture made = maker_->make("ldc", settings, shot, progress);
     std::vector<RenderStats::FrameTime>& times = made.stats.render.frames;
     times.erase(times.begin(), times.end() - frames);
     return made;

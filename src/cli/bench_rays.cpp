@@ -76,10 +76,10 @@ MeasuredScene::MeasuredScene(Device& device, ClockProbe& probe, const BenchScene
       choice_(choice),
       repeat_(repeat),
       scene_(prepare_scene(choice_.picture)),
-      assembly_(assemble(scene_.scene, motion_of(scene_.scene, scene_.animation))),
+      assembly_(assemble(scene_.scene, scene_.moment, motion_of(scene_.scene, scene_.animation))),
       oracle_(scene_.geometry(), AlphaTest(scene_.scene, scene_.geometry())) {
     if (choice_.light) return;
-    const std::vector<Light>& own = scene_.scene.lights;
+    const std::vector<Light>& own = scene_.moment.lights;
     const std::vector<Light>& sky = scene_.environment.lights;
     if (!own.empty() || !sky.empty()) {
         choice_.light = own.empty() ? sky.front() : own.front();
@@ -142,7 +142,7 @@ RenderSettings MeasuredScene::settings_of_way(const Way& way) const {
 void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     const RenderSettings settings = settings_of_way(way);
     {
-        LdcContender cubes(device_, probe_, scene_.scene, assembly_,
+        LdcContender cubes(device_, probe_, scene_.scene, scene_.moment, assembly_,
                            choose_automatically(device_, uint32_t(scene_.triangles), settings));
         measure(cubes, cubes.stats().resolution, row);
     }
@@ -158,7 +158,8 @@ void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
 }
 
 void MeasuredScene::measure_frame(const RenderSettings& settings, RayRow& row) {
-    if (!renderer_) renderer_ = std::make_unique<Renderer>(device_, scene_.scene, assembly_, scene_.environment);
+    if (!renderer_)
+        renderer_ = std::make_unique<Renderer>(device_, scene_.scene, scene_.moment, assembly_, scene_.environment);
     RenderSettings repeated = settings;
     repeated.repeat = repeat_ + kFrameWarmUp + 1;  // the renderer leaves out the first itself
     repeated.time_passes = false;
@@ -174,7 +175,7 @@ void MeasuredScene::measure_frame(const RenderSettings& settings, RayRow& row) {
 /// `update`: of structures that are built in every frame, or never again.
 void MeasuredScene::measure_khr(StructureUpdate update, bool frame, RayRow& row) {
     {
-        KhrContender structures(device_, probe_, scene_.scene, assembly_, update);
+        KhrContender structures(device_, probe_, scene_.scene, scene_.moment, assembly_, update);
         measure(structures, 0, row);
     }
     if (!frame) return;

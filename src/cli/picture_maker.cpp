@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "motion/animation.h"
 #ifdef PEELRAY_WITH_REFERENCE
 #include "cli/reference_picture.h"
-#include "motion/animation.h"
 #endif
 
 namespace peelray {
@@ -46,10 +46,10 @@ void PictureMaker::check_validation() const {
     if (device_) device_->check_validation();
 }
 
-MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings, const Moment& moment,
+MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings, const Shot& shot,
                                const std::function<void(double)>& progress) {
-    if (moment.time) move_to(scene_, arguments_, *moment.time);
-    settings.camera = turned(scene_.camera, moment.turn);
+    if (shot.time) move_to(scene_, arguments_, *shot.time);
+    settings.camera = turned(scene_.camera, shot.turn);
     settings.bounds = scene_.bounds;
     std::optional<Progress> bar;
     if (!progress) bar.emplace(tracer == "reference" ? "ray tracing" : "rendering", 1);
@@ -70,22 +70,20 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
 /// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another,
 /// since what one needed must not count as another's memory.
 Renderer& PictureMaker::renderer_for(const RenderSettings& settings) {
+    if (settings.tracer == Tracer::cubemap) scene_.simulate();
     const Kind kind{settings.tracer, settings.hit_auto, settings.hit};
     if (!renderer_ || !(kind == kind_)) {
         renderer_.reset();
         device().reset_peak();
         // Taken apart as it is in the beginning: where a picture's moment lies must not shape its cubes.
-        if (!scene_.animation.empty()) animate(scene_.scene, scene_.animation, 0);
-        const Assembly assembly = assemble(scene_.scene, motion_of(scene_.scene, scene_.animation));
-        if (scene_.time) animate(scene_.scene, scene_.animation, *scene_.time);
-        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene, assembly, scene_.environment);
+        const Assembly assembly = assemble(scene_.scene, moment_of(scene_.scene, scene_.animation, 0),
+                                           motion_of(scene_.scene, scene_.animation));
+        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene, scene_.moment, assembly, scene_.environment);
         kind_ = kind;
         posed_ = scene_.time;
     }
-    if (posed_ != scene_.time) renderer_->pose(scene_.scene);
+    if (posed_ != scene_.time) renderer_->pose(scene_.moment);
     posed_ = scene_.time;
-    // Cube maps stand in the middle of objects, whose boxes the CPU knows.
-    if (settings.tracer == Tracer::cubemap) simulate(scene_.scene);
     return *renderer_;
 }
 

@@ -16,7 +16,7 @@ struct MadePicture {
 };
 
 /// When and from where a picture is seen.
-struct Moment {
+struct Shot {
     std::optional<double> time;  ///< of the animation, seconds; none: as the scene stands
     double turn = 0;             ///< how far the camera went around its look point, see turned()
 };
@@ -30,7 +30,7 @@ class PictureMaker {
 
     /// Throws Error: no device, impossible settings, an interrupt, a validation message. `progress` is told the share
     /// done, [0, 1]; without it a bar of its own is drawn.
-    MadePicture make(const std::string& tracer, RenderSettings settings, const Moment& moment = {},
+    MadePicture make(const std::string& tracer, RenderSettings settings, const Shot& shot = {},
                      const std::function<void(double)>& progress = {});
 
     /// Throws Error where a tracer cannot render on this device.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "cli/values.h"
@@ -33,24 +34,24 @@ Environment choose_environment(const PictureArguments& a, const Scene& scene) {
     return color_environment(glm::vec3(0.05f));
 }
 
-const Camera& find_camera(const Scene& scene, const std::string& name) {
-    if (scene.cameras.empty())
-        fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
+const Camera& find_camera(const Scene& scene, const std::vector<Camera>& cameras, const std::string& name) {
+    if (cameras.empty()) fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
     std::string names;
-    for (size_t i = 0; i < scene.cameras.size(); i++) {
-        if (scene.cameras[i].name == name || std::to_string(i) == name) return scene.cameras[i];
-        names += fmt::format("{}{}: {}", i ? ", " : "", i,
-                             scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+    for (size_t i = 0; i < cameras.size(); i++) {
+        if (cameras[i].name == name || std::to_string(i) == name) return cameras[i];
+        names += fmt::format("{}{}: {}", i ? ", " : "", i, cameras[i].name.empty() ? "(no name)" : cameras[i].name);
     }
     fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
 }
 
-Camera choose_camera(const PictureArguments& a, const Scene& scene, const Box& box) {
+/// `cameras`: of the scene, where they are now.
+Camera choose_camera(const PictureArguments& a, const Scene& scene, const std::vector<Camera>& cameras,
+                     const Box& box) {
     Camera camera = frame_box(box.lower, box.upper, float(a.size.x) / float(a.size.y));
     if (!a.camera.empty())
-        camera = find_camera(scene, a.camera);
-    else if (!a.eye && !a.look && !scene.cameras.empty())
-        camera = scene.cameras.front();
+        camera = find_camera(scene, cameras, a.camera);
+    else if (!a.eye && !a.look && !cameras.empty())
+        camera = cameras.front();
     if (a.eye || a.look) camera.orthographic_height = 0;
     if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (box.lower + box.upper));
     if (a.eye) camera.eye = *a.eye;
@@ -209,36 +210,48 @@ void check_counters(const RenderArguments& a) {
 
 const Geometry& PreparedScene::geometry() {
     if (!geometry_) {
-        simulate(scene);
-        geometry_ = flatten(scene);
+        simulate();
+        geometry_ = flatten(scene, moment);
     }
     return *geometry_;
+}
+
+void PreparedScene::simulate() {
+    if (std::exchange(simulated_, true)) return;
+    simulation_.place(scene, moment);
+}
+
+void PreparedScene::move_to(double seconds) {
+    moment = moment_of(scene, animation, seconds);
+    time = seconds;
+    simulated_ = false;
+    geometry_.reset();
 }
 
 PreparedScene prepare_scene(const PictureArguments& a) {
     PreparedScene scene;
     scene.scene = load_scene(a.scene);
     scene.animation = choose_animation(a, scene.scene);
-    scene.framed = scene.animation.empty() ? bounds(scene.scene) : bounds_over(scene.scene, scene.animation);
+    if (!scene.animation.empty()) complete_targets(scene.scene);
+    scene.framed =
+        scene.animation.empty() ? bounds(scene.scene, at_rest(scene.scene)) : bounds_over(scene.scene, scene.animation);
     if (!a.material.empty()) override_material(scene.scene, a.material, scene.framed);
     scene.bounds = a.floor ? add_floor(scene.scene, scene.framed) : scene.framed;
-    if (!scene.animation.empty()) {
-        scene.time = a.time.value_or(0);
-        animate(scene.scene, scene.animation, *scene.time);
-    }
+    if (scene.animation.empty())
+        scene.moment = at_rest(scene.scene);
+    else
+        scene.move_to(a.time.value_or(0));
     check_visible(scene.geometry(), scene.scene, scene.time.has_value());
     scene.triangles = scene.geometry().triangles.size();
-    scene.camera = choose_camera(a, scene.scene, scene.framed);
+    scene.camera = choose_camera(a, scene.scene, scene.moment.cameras, scene.framed);
     scene.environment = choose_environment(a, scene.scene);
     return scene;
 }
 
 void move_to(PreparedScene& scene, const PictureArguments& a, double time) {
     if (scene.animation.empty() || scene.time == time) return;
-    animate(scene.scene, scene.animation, time);
-    scene.time = time;
-    scene.forget_geometry();
-    scene.camera = choose_camera(a, scene.scene, scene.framed);
+    scene.move_to(time);
+    scene.camera = choose_camera(a, scene.scene, scene.moment.cameras, scene.framed);
 }
 
 }  // namespace peelray

@@ -2,28 +2,35 @@
 #pragma once
 
 #include "cli/program.h"
+#include "motion/simulation.h"
 #include "scene/environment.h"
 
 namespace peelray {
 
-/// A scene at some moment. What frames the picture does not depend on the moment, so that a sequence does not wobble
-/// and any frame of it can be rendered alone.
+/// A scene and one of its moments. What frames the picture does not depend on the moment, so that a sequence does not
+/// wobble and any frame of it can be rendered alone.
 struct PreparedScene {
     Scene scene;
+    Moment moment;
     Camera camera;
     Environment environment;
-    std::string animation;       ///< the one that moves the scene, see animate(); empty: it stands at rest
-    std::optional<double> time;  ///< the moment of it that the scene is in
+    std::string animation;       ///< the one that moves the scene, see moment_of(); empty: it stands at rest
+    std::optional<double> time;  ///< of the moment, in the animation
     Box framed;                  ///< the scene without the floor of --floor, over the whole animation
     Box bounds;                  ///< the same with the floor
     uint64_t triangles = 0;      ///< with all instances
 
     /// The triangles of this moment; put together when they are first asked for, since most tracers need none.
     const Geometry& geometry();
-    void forget_geometry() { geometry_.reset(); }
+    /// Places what is generated on the CPU, too.
+    void simulate();
+    /// Another moment of the animation.
+    void move_to(double seconds);
 
   private:
     std::optional<Geometry> geometry_;
+    Simulation simulation_;
+    bool simulated_ = false;  ///< the moment has been
 };
 
 /// Throws Error for values that are well-formed but make no sense.

@@ -14,7 +14,8 @@ MadePicture reference_picture(PreparedScene& scene, const PictureSettings& setti
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
-    const PathTracer tracer(scene.scene, scene.geometry(), scene.environment);
+    const Geometry& geometry = scene.geometry();
+    const PathTracer tracer(scene.scene, scene.moment, geometry, scene.environment);
     const auto built = Clock::now();
     MadePicture made;
     made.picture = tracer.render(settings, progress);

@@ -32,11 +32,11 @@ std::vector<uint32_t> Sequence::numbers() const {
     return numbers;
 }
 
-Moment Sequence::moment(uint32_t frame) const {
-    Moment moment;
-    if (runs) moment.time = frame / fps;
-    if (turntable > 0) moment.turn = double(frame) / turntable;
-    return moment;
+Shot Sequence::shot(uint32_t frame) const {
+    Shot shot;
+    if (runs) shot.time = frame / fps;
+    if (turntable > 0) shot.turn = double(frame) / turntable;
+    return shot;
 }
 
 Sequence plan_sequence(const RenderArguments& a) {

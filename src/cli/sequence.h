@@ -14,7 +14,7 @@ struct Sequence {
 
     /// Those of the shard, in order.
     std::vector<uint32_t> numbers() const;
-    Moment moment(uint32_t frame) const;
+    Shot shot(uint32_t frame) const;
 };
 
 /// What the options ask for. Throws Error where they contradict each other or are out of range.

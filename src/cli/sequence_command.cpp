@@ -26,7 +26,7 @@ double seconds_since(Clock::time_point start) {
 /// The arguments of the frame that comes first: what is said of --time holds for it as for a single picture.
 RenderArguments at_first_frame(const RenderArguments& a, const Sequence& sequence) {
     RenderArguments first = a;
-    if (sequence.runs) first.time = sequence.moment(sequence.numbers().front()).time;
+    if (sequence.runs) first.time = sequence.shot(sequence.numbers().front()).time;
     return first;
 }
 
@@ -67,7 +67,7 @@ class Run {
     double frame_ms_ = 0, build_ms_ = 0;
     struct Frame {
         uint32_t number;
-        Moment moment;
+        Shot shot;
         PictureStats stats;
     };
     Json frame_json(const Frame& frame) const;
@@ -77,7 +77,7 @@ class Run {
 MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
     const RenderSettings settings = settings_of(arguments_);
     try {
-        return maker_.make(arguments_.tracing.tracer, settings, sequence_.moment(frame), progress);
+        return maker_.make(arguments_.tracing.tracer, settings, sequence_.shot(frame), progress);
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
@@ -96,13 +96,13 @@ void Run::count(uint32_t frame, MadePicture& made) {
     rays_.ambient += rays.ambient;
     frame_ms_ += made.stats.render.frame_ms;
     build_ms_ += made.stats.render.build_ms;
-    if (!arguments_.stats.empty()) frames_.push_back({frame, sequence_.moment(frame), std::move(made.stats)});
+    if (!arguments_.stats.empty()) frames_.push_back({frame, sequence_.shot(frame), std::move(made.stats)});
 }
 
 Json Run::frame_json(const Frame& frame) const {
-    const std::optional<double> time = frame.moment.time ? frame.moment.time : scene_.time;
+    const std::optional<double> time = frame.shot.time ? frame.shot.time : scene_.time;
     Json json = {{"frame", frame.number}, {"time", time ? Json(*time) : Json(nullptr)}};
-    if (sequence_.turntable > 0) json["turn_degrees"] = frame.moment.turn * 360;
+    if (sequence_.turntable > 0) json["turn_degrees"] = frame.shot.turn * 360;
     json.update(picture_json(frame.stats));
     return json;
 }

@@ -112,7 +112,8 @@ void run_trace(const TraceArguments& a) {
     check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
     const Scene scene = load_scene(a.scene);
-    const Geometry geometry = flatten(scene);
+    const Moment rest = at_rest(scene);
+    const Geometry geometry = flatten(scene, rest);
     check_visible(geometry, scene);
 
     RenderSettings settings;
@@ -125,7 +126,7 @@ void run_trace(const TraceArguments& a) {
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");
         const auto khr = a.tracing.tracer == "khr" ? std::optional(StructureUpdate::keep) : std::nullopt;
-        return RayScene(device, scene, assemble(scene, motion_of(scene, "")), choice, khr);
+        return RayScene(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), choice, khr);
     }();
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();

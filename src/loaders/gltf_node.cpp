@@ -89,8 +89,7 @@ class NodeReader {
         for (int i = 0; i < 16 && node.fixed; ++i)
             node.local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
         node.skin = from.skin;
-        node.rest_weights.assign(from.weights.begin(), from.weights.end());
-        node.weights = node.rest_weights;
+        node.weights.assign(from.weights.begin(), from.weights.end());
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
         check_finite(world, loader_.file.where("nodes", index));
         if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
@@ -151,7 +150,7 @@ class NodeReader {
         node.name = loader_.scene.nodes[p].name;
         node.parent = parent;
         node.mesh = std::exchange(loader_.scene.nodes[p].mesh, -1);
-        node.weights = node.rest_weights = loader_.scene.nodes[p].weights;
+        node.weights = loader_.scene.nodes[p].weights;
         for (const glm::mat4& instance : instances) {
             node.local = instance;
             loader_.scene.nodes.push_back(node);

@@ -1,5 +1,6 @@
 // glTF 2.0, section 3.11 (animations) and appendix C (interpolation).
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
@@ -36,7 +37,7 @@ void make_unit(std::vector<float>& rotation) {
     for (float& v : rotation) v = float(v / length);
 }
 
-void apply(const AnimationChannel& channel, float time, Scene& scene, std::vector<Placement>& placements) {
+void apply(const AnimationChannel& channel, float time, Moment& moment, std::vector<Placement>& placements) {
     const std::vector<float> v = channel.at(time);
     Placement& placement = placements[size_t(channel.node)];
     switch (channel.path) {
@@ -50,27 +51,26 @@ void apply(const AnimationChannel& channel, float time, Scene& scene, std::vecto
             placement.scale = {v[0], v[1], v[2]};
             break;
         case Path::weights:
-            scene.nodes[size_t(channel.node)].weights = v;
+            moment.weights[size_t(channel.node)] = v;
             break;
     }
 }
 
 /// Cameras and lights go where their nodes went.
-void carry_along(Scene& scene) {
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
+void carry_along(const Scene& scene, Moment& moment) {
     for (size_t i = 0; i < scene.nodes.size(); i++) {
         const Node& node = scene.nodes[i];
-        const Pose pose(worlds[i]);
+        if (node.camera < 0 && node.light < 0) continue;
+        const Pose pose(moment.worlds[i]);
         if (node.camera >= 0) {
-            Camera& camera = scene.cameras[size_t(node.camera)];
-            // Taken once: from moment to moment it would drift by a rounding.
-            if (camera.look_distance == 0) camera.look_distance = glm::length(camera.look - camera.eye);
+            const Camera& rest = scene.cameras[size_t(node.camera)];
+            Camera& camera = moment.cameras[size_t(node.camera)];
             camera.eye = pose.at;
-            camera.look = pose.at + pose.ahead * camera.look_distance;
+            camera.look = pose.at + pose.ahead * glm::length(rest.look - rest.eye);
             camera.up = pose.up;
         }
         if (node.light >= 0) {
-            Light& light = scene.lights[size_t(node.light)];
+            Light& light = moment.lights[size_t(node.light)];
             light.position = pose.at;
             light.direction = pose.ahead;
         }
@@ -95,22 +95,14 @@ bool varies(const AnimationChannel& channel) {
     return false;
 }
 
-void pose(Scene& scene, const std::vector<const Animation*>& animations, double time) {
-    std::vector<Placement> placements;
-    for (Node& node : scene.nodes) {
-        placements.push_back(node.rest);
-        node.weights = node.rest_weights;
-    }
-    for (const Animation* animation : animations) {
-        const double past =
-            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
-        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), scene, placements);
-    }
-    for (size_t i = 0; i < scene.nodes.size(); i++)
-        if (!scene.nodes[i].fixed) scene.nodes[i].local = placements[i].matrix();
-    scene.generated.time = generates(scene, animations) ? time : 0;
-    carry_along(scene);
+#ifndef NDEBUG
+bool has_all_targets(const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes)
+        for (const Primitive& primitive : mesh.primitives)
+            if (primitive.make_targets) return false;
+    return true;
 }
+#endif
 
 }  // namespace
 
@@ -167,13 +159,25 @@ void complete_targets(Scene& scene) {
             if (const auto make = std::exchange(primitive.make_targets, nullptr)) primitive.targets = make(primitive);
 }
 
-void animate(Scene& scene, const std::string& which, double time) {
-    complete_targets(scene);
-    pose(scene, find_animations(scene, which), time);
-}
-
-void stand_at_rest(Scene& scene) {
-    pose(scene, {}, 0);
+Moment moment_of(const Scene& scene, const std::string& which, double time) {
+    if (which.empty()) return at_rest(scene);
+    const std::vector<const Animation*> animations = find_animations(scene, which);
+    assert(has_all_targets(scene));
+    Moment moment = at_rest(scene);
+    std::vector<Placement> placements;
+    placements.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes) placements.push_back(node.rest);
+    for (const Animation* animation : animations) {
+        const double past =
+            animation->duration > 0 && time > animation->duration ? std::fmod(time, animation->duration) : time;
+        for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), moment, placements);
+    }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (!scene.nodes[i].fixed) moment.locals[i] = placements[i].matrix();
+    moment.worlds = world_matrices(scene, moment.locals);
+    if (generates(scene, animations)) moment.generated_time = time;
+    carry_along(scene, moment);
+    return moment;
 }
 
 Motion motion_of(const Scene& scene, const std::string& which) {

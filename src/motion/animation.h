@@ -1,10 +1,10 @@
-// Key frames: a scene at a moment of its animations.
+// Key frames: moments of a scene's animations.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 namespace peelray {
 
@@ -12,17 +12,14 @@ namespace peelray {
 /// those there are, and for a scene without any.
 std::vector<const Animation*> find_animations(const Scene& scene, const std::string& which);
 
-/// Makes the morph targets that were left for later. animate() begins with it; call it before looking at
-/// Primitive::targets of a scene that was not animated yet.
+/// Makes the morph targets that were left for later; part of opening a scene that is to be animated.
 void complete_targets(Scene& scene);
 
-/// Puts the scene into the moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and
-/// lights that hang on nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest.
-/// `which`: see find_animations(); of two that move the same, the later one wins. The result depends on nothing that
-/// was done to the scene before. Throws Error like find_animations().
-void animate(Scene& scene, const std::string& which, double time);
-
-/// Undoes animate().
-void stand_at_rest(Scene& scene);
+/// The moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and lights that hang on
+/// nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest. Of what is
+/// generated only the time: a Simulation places it. `which`: see find_animations(), empty: the scene at rest; of two
+/// animations that move the same, the later one wins. The scene's targets must be complete. Throws Error like
+/// find_animations().
+Moment moment_of(const Scene& scene, const std::string& which, double time);
 
 }  // namespace peelray

@@ -93,46 +93,42 @@ size_t vertices_of_nodes(const Scene& scene) {
     return count;
 }
 
-/// Where the vertices of a primitive are now.
-std::vector<glm::vec3> placed(const Scene& scene, const Node& node, const Primitive& primitive,
-                              const std::vector<glm::mat4>& worlds, const glm::mat4& world) {
-    if (!is_rigid(primitive, node)) {
-        const std::vector<float>& weights =
-            node.weights.empty() ? scene.meshes[size_t(node.mesh)].weights : node.weights;
-        return deform(scene, node, primitive, weights, worlds, world).positions;
-    }
+/// Where the vertices of a node's primitive are at a moment, without their normals.
+std::vector<glm::vec3> positions_of(const Scene& scene, const Moment& moment, size_t n, const Primitive& primitive) {
+    const Node& node = scene.nodes[n];
+    if (!is_rigid(primitive, node))
+        return deform(scene, node, primitive, weights_of(scene, moment, n), moment.worlds, moment.worlds[n]).positions;
+    const Moment::Surface* surface = moment.surface_of(int(n));
+    const std::vector<glm::vec3>& positions = surface ? surface->positions : primitive.positions;
     std::vector<glm::vec3> out;
-    out.reserve(primitive.positions.size());
-    for (const glm::vec3& p : primitive.positions) out.push_back(glm::vec3(world * glm::vec4(p, 1)));
+    out.reserve(positions.size());
+    for (const glm::vec3& p : positions) out.push_back(glm::vec3(moment.worlds[n] * glm::vec4(p, 1)));
     return out;
 }
 
 }  // namespace
 
-Box bounds(const Scene& scene) {
+Box bounds(const Scene& scene, const Moment& moment) {
     Box box;
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
     for (size_t n = 0; n < scene.nodes.size(); n++) {
         const Node& node = scene.nodes[n];
         if (node.mesh < 0) continue;
         for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
-            const std::vector<glm::vec3> positions = placed(scene, node, primitive, worlds, worlds[n]);
+            const std::vector<glm::vec3> positions = positions_of(scene, moment, n, primitive);
             for_each_vertex(primitive, [&](size_t i) { box.add(positions[i]); });
         }
     }
     return box;
 }
 
-Box bounds_over(Scene& scene, const std::string& which) {
+Box bounds_over(const Scene& scene, const std::string& which) {
     const std::vector<double> times = moments(find_animations(scene, which));
-    complete_targets(scene);  // which thinned() copies
-    stand_at_rest(scene);
-    Box box = bounds(scene);
+    const Moment rest = at_rest(scene);
+    Box box = bounds(scene, rest);
     if (motion_of(scene, which).generates) {
         box.add(scene.generated.reach.lower);
         box.add(scene.generated.reach.upper);
     }
-    const std::vector<glm::mat4> rest = world_matrices(scene);
     const size_t stride = 1 + vertices_of_nodes(scene) * times.size() / most_places;
     std::vector<std::vector<Primitive>> meshes;
     for (const Mesh& mesh : scene.meshes) {
@@ -140,15 +136,14 @@ Box bounds_over(Scene& scene, const std::string& which) {
         for (const Primitive& primitive : mesh.primitives) meshes.back().push_back(thinned(primitive, stride));
     }
     for (const double time : times) {
-        animate(scene, which, time);
-        const std::vector<glm::mat4> worlds = world_matrices(scene);
+        const Moment moment = moment_of(scene, which, time);
         for (size_t n = 0; n < scene.nodes.size(); n++) {
             const Node& node = scene.nodes[n];
             if (node.mesh < 0) continue;
             for (const Primitive& primitive : meshes[size_t(node.mesh)]) {
-                if (is_rigid(primitive, node) && worlds[n] == rest[n]) continue;
+                if (is_rigid(primitive, node) && moment.worlds[n] == rest.worlds[n]) continue;
                 // What leaves the range of floats is refused where that moment is shown.
-                for (const glm::vec3& p : placed(scene, node, primitive, worlds, worlds[n]))
+                for (const glm::vec3& p : positions_of(scene, moment, n, primitive))
                     if (is_finite(p)) box.add(p);
             }
         }

@@ -4,17 +4,17 @@
 #include <string>
 
 #include "scene/box.h"
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 namespace peelray {
 
-/// The box of all triangles as the scene stands.
-Box bounds(const Scene& scene);
+/// The box of all triangles at a moment.
+Box bounds(const Scene& scene, const Moment& moment);
 
-/// The box of a scene at rest and at moments of animations (`which`: see animate()); of what is generated, of all that
-/// it may reach. The moments are spread evenly and over the keys, at most 66; of large meshes a share of the vertices
-/// is looked at, so that the cost does not grow with them. So at moments in between something may reach a little
-/// farther. Leaves the scene at some moment. Throws Error like animate().
-Box bounds_over(Scene& scene, const std::string& which);
+/// The box of a scene at rest and at moments of animations (`which`: see moment_of()); of what is generated, of all
+/// that it may reach. The moments are spread evenly and over the keys, at most 66; of large meshes a share of the
+/// vertices is looked at, so that the cost does not grow with them. So at moments in between something may reach a
+/// little farther. Throws Error like moment_of().
+Box bounds_over(const Scene& scene, const std::string& which);
 
 }  // namespace peelray

@@ -16,7 +16,7 @@ struct Motion {
     bool generates = false;    ///< what is generated goes on (Scene::generated)
 };
 
-/// Of the animation `which` (as animate() takes it; empty: none). Throws Error for an unknown one.
+/// Of the animation `which` (as moment_of() takes it; empty: none). Throws Error for an unknown one.
 Motion motion_of(const Scene& scene, const std::string& which);
 
 }  // namespace peelray

@@ -75,12 +75,12 @@ struct PathTracer::Impl {
     Surroundings surroundings;
     std::vector<Light> lights;
 
-    Impl(const Scene& scene, const Geometry& geometry, const Environment& environment)
+    Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment)
         : geometry(geometry),
           bvh(geometry, AlphaTest(scene, geometry)),
           surfaces(scene, geometry),
           surroundings(environment),
-          lights(scene.lights) {
+          lights(moment.lights) {
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
 
@@ -152,8 +152,9 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
     return rays;
 }
 
-PathTracer::PathTracer(const Scene& scene, const Geometry& geometry, const Environment& environment)
-    : impl_(std::make_unique<Impl>(scene, geometry, environment)) {}
+PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry,
+                       const Environment& environment)
+    : impl_(std::make_unique<Impl>(scene, moment, geometry, environment)) {}
 
 PathTracer::~PathTracer() = default;
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scene/environment.h"
+#include "scene/moment.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -16,7 +17,7 @@ namespace peelray {
 class PathTracer {
   public:
     /// `scene`, `geometry` and `environment` must outlive it. Throws Error if Embree has no room.
-    PathTracer(const Scene& scene, const Geometry& geometry, const Environment& environment);
+    PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment);
     ~PathTracer();
 
     /// `threads`: 0 for all cores. The picture does not depend on it. `progress` is told the share done, [0, 1], from

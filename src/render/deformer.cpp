@@ -48,11 +48,10 @@ bool is_mirrored(const Primitive& primitive, const std::vector<glm::mat4>& matri
 
 }  // namespace
 
-Deformer::Deformer(Device& device, const Scene& scene, const Assembly& assembly)
+Deformer::Deformer(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly)
     : device_(device), places_(assembly.pieces) {
     if (places_.empty()) return;
     Commands commands(device);
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
     uint32_t groups = 0;
     for (const Assembly::Piece& place : places_) {
         const Primitive& primitive = primitive_of(scene, place);
@@ -68,7 +67,7 @@ Deformer::Deformer(Device& device, const Scene& scene, const Assembly& assembly)
         add_rest(primitive, piece);
         if (is_skinned(scene, place)) add_influences(primitive, piece);
         add_targets(primitive, piece);
-        const std::vector<glm::mat4> matrices = matrices_of(scene, place, worlds);
+        const std::vector<glm::mat4> matrices = matrices_of(scene, place, moment.worlds);
         joint_count_ += uint32_t(matrices.size());
         weight_count_ += piece.targets;
         groups += (piece.vertices + 63) / 64;
@@ -126,17 +125,15 @@ void Deformer::add_targets(const Primitive& primitive, DeformPiece& piece) {
     }
 }
 
-void Deformer::pose(Commands& commands, const Scene& scene, const Buffer& triangles) {
+void Deformer::pose(Commands& commands, const Scene& scene, const Moment& moment, const Buffer& triangles) {
     if (empty()) return;
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
     std::vector<GpuTransform> joints;
     std::vector<float> weights;
     for (size_t i = 0; i < places_.size(); i++) {
-        const Node& node = node_of(scene, places_[i]);
         const Primitive& primitive = primitive_of(scene, places_[i]);
-        const std::vector<glm::mat4> matrices = matrices_of(scene, places_[i], worlds);
+        const std::vector<glm::mat4> matrices = matrices_of(scene, places_[i], moment.worlds);
         for (const glm::mat4& matrix : matrices) joints.push_back(gpu_transform(matrix));
-        std::vector<float> own = node.weights.empty() ? scene.meshes[size_t(node.mesh)].weights : node.weights;
+        std::vector<float> own = weights_of(scene, moment, size_t(places_[i].node));
         own.resize(primitive.targets.size(), 0.0f);
         weights.insert(weights.end(), own.begin(), own.end());
         const bool mirrors = is_mirrored(primitive, matrices);

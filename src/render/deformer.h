@@ -10,13 +10,13 @@ namespace peelray {
 class Deformer {
   public:
     /// Uploads the shapes at rest, the joints' weights and the morph targets of the assembly's pieces.
-    Deformer(Device& device, const Scene& scene, const Assembly& assembly);
+    Deformer(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly);
 
     bool empty() const { return pieces_.empty(); }
 
-    /// Takes on the moment that `scene` is in: uploads joints and weights. Where a transform has come to turn a piece
+    /// Takes on another moment of the scene: uploads joints and weights. Where a transform has come to turn a piece
     /// inside out, or back, its triangles in `triangles` are turned over.
-    void pose(Commands& commands, const Scene& scene, const Buffer& triangles);
+    void pose(Commands& commands, const Scene& scene, const Moment& moment, const Buffer& triangles);
 
     /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies,
     /// whose bounds have been emptied.

@@ -29,7 +29,6 @@ Generators::Generators(Device& device, const Scene& scene, const Assembly& assem
         const Water& water = scene.generated.waters[i];
         WaterState state;
         state.water = water;
-        state.water.heights = state.water.velocities = {};
         const uint64_t vertices = water.start.size();
         for (Buffer& heights : state.heights) heights = Buffer(device, "heights of water", vertices * 4);
         state.velocities = Buffer(device, "velocities of water", vertices * 4);
@@ -71,13 +70,12 @@ void Generators::start(Commands& commands, WaterState& state) {
     commands.submit();
 }
 
-void Generators::pose(Commands& commands, const Scene& scene) {
-    const double time = scene.generated.time;
+void Generators::pose(Commands& commands, const Scene& scene, double time) {
     for (WaterState& state : waters_) {
         if (time > kLongest)
             fail("{}: water is simulated from its beginning, for at most {} seconds: choose an earlier moment than {}",
                  scene.name, kLongest, time);
-        const WaterMoment moment = moment_of(state.water, time);
+        const WaterSteps moment = steps_until(state.water, time);
         if (moment.steps < state.step) start(commands, state);
         state.wanted = moment.steps;
         state.params.rest = float(moment.rest);

@@ -13,8 +13,9 @@ class Generators {
 
     bool empty() const { return waters_.empty() && swarms_.empty(); }
 
-    /// Takes on the moment that `scene` is in. Throws Error for one that is too far from the beginning to be simulated.
-    void pose(Commands& commands, const Scene& scene);
+    /// Takes on the moment `time` of the scene, seconds. Throws Error for one that is too far from the beginning to be
+    /// simulated.
+    void pose(Commands& commands, const Scene& scene, double time);
 
     /// Records the passes into the group "animate": vertices and bounds of bodies (whose bounds have been emptied), and
     /// transforms of instances. Submits in between if there are very many steps to take.
@@ -28,7 +29,7 @@ class Generators {
 
   private:
     struct WaterState {
-        Water water;  ///< without heights
+        Water water;
         WaterParams params{};
         Buffer heights[2], velocities, floats;
         uint32_t current = 0;  ///< which heights

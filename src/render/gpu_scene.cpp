@@ -39,14 +39,15 @@ std::vector<DrawRange> draw_ranges(const Assembly& assembly) {
 
 }  // namespace
 
-GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly, const Environment& env)
+GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+                   const Environment& env)
     : triangles(device, assembly.positions, assembly.triangles),
       instances(device, instance_infos(assembly)),
       draws(draw_ranges(assembly)),
       device_(device),
       placed_(assembly.instances),
       fixed_bodies_(assembly.fixed),
-      deformer_(device, scene, assembly),
+      deformer_(device, scene, moment, assembly),
       generators_(device, scene, assembly) {
     Commands commands(device);
     std::vector<GpuDraw> table;
@@ -72,20 +73,20 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Assembly& assembly,
     sun_direction_ = env.sun_direction;
     sun_radiance_ = env.sun_radiance;
     irradiance_ = env.irradiance;
-    pose(commands, scene);
+    pose(commands, scene, moment);
 }
 
-uint32_t GpuScene::pose(Commands& commands, const Scene& scene) {
-    std::vector<GpuTransform> transforms = transforms_of(placed_, world_matrices(scene));
+uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& moment) {
+    std::vector<GpuTransform> transforms = transforms_of(placed_, moment.worlds);
     uint32_t moved = 0;
     for (size_t i = 0; i < transforms_.size(); i++)
         moved += generators_.places(placed_[i].node) ||
                  std::memcmp(&transforms[i], &transforms_[i], sizeof transforms[i]) != 0;
     if (moved > 0 || transforms_.empty()) instances.place(commands, std::span<const GpuTransform>(transforms));
     transforms_ = std::move(transforms);
-    deformer_.pose(commands, scene, triangles.triangles);
-    generators_.pose(commands, scene);
-    upload_lights(commands, scene);
+    deformer_.pose(commands, scene, moment, triangles.triangles);
+    generators_.pose(commands, scene, moment.generated_time);
+    upload_lights(commands, moment.lights);
     return moved;
 }
 
@@ -98,9 +99,9 @@ void GpuScene::record_animation(Commands& commands, const Cubes& cubes) {
     generators_.record(commands, cubes, triangles, normals, instances);
 }
 
-void GpuScene::upload_lights(Commands& commands, const Scene& scene) {
+void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) {
     std::vector<GpuLight> list;
-    for (const Light& light : scene.lights) list.push_back(gpu_light(light));
+    for (const Light& light : own) list.push_back(gpu_light(light));
     list.insert(list.end(), environment_lights_.begin(), environment_lights_.end());
     const size_t bytes = list.size() * sizeof(GpuLight);
     if (lights && list.size() == light_list.size() && std::memcmp(list.data(), light_list.data(), bytes) == 0) return;

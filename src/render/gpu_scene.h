@@ -13,7 +13,8 @@ namespace peelray {
 /// Uploaded once per scene and environment; pose() moves it. Throws Error when the device has no room.
 class GpuScene {
   public:
-    GpuScene(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
+    GpuScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+             const Environment& environment);
     GpuScene(const GpuScene&) = delete;
     GpuScene& operator=(const GpuScene&) = delete;
 
@@ -28,9 +29,9 @@ class GpuScene {
     Buffer draw_table;             ///< the same, GpuDraw each
     uint64_t drawn = 0;            ///< triangles of all draws; draw_table is right up to 2^32
 
-    /// Takes on the moment that `scene` is in: transforms, joints, weights, lights, what is generated. Returns how many
+    /// Takes on another moment of the scene: transforms, joints, weights, lights, what is generated. Returns how many
     /// instances moved; those that are placed on the device all count.
-    uint32_t pose(Commands& commands, const Scene& scene);
+    uint32_t pose(Commands& commands, const Scene& scene, const Moment& moment);
 
     /// Records what computes the vertices of this moment.
     void record_animation(Commands& commands, const Cubes& cubes);
@@ -41,7 +42,7 @@ class GpuScene {
     void describe(Frame& frame) const;
 
   private:
-    void upload_lights(Commands& commands, const Scene& scene);
+    void upload_lights(Commands& commands, const std::vector<Light>& own);
 
     Device& device_;
     std::vector<Assembly::Instance> placed_;

@@ -8,13 +8,13 @@
 
 namespace peelray {
 
-RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice,
-                   std::optional<StructureUpdate> khr)
+RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+                   const CubeChoice& choice, std::optional<StructureUpdate> khr)
     : device_(device),
       triangles_(device, assembly.positions, assembly.triangles),
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
       instances_(device, instance_infos(assembly)),
-      cubes_(device, assembly, choice, smallest_scales(assembly, world_matrices(scene))),
+      cubes_(device, assembly, choice, smallest_scales(assembly, moment.worlds)),
       shown_(assembly.bodies.size()) {
     Commands commands(device);
     if (has_masks(scene, assembly.materials)) {
@@ -22,7 +22,7 @@ RayScene::RayScene(Device& device, const Scene& scene, const Assembly& assembly,
         triangles_.masks = &base_colors_;
     }
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
-    instances_.place(commands, transforms_of(assembly.instances, world_matrices(scene)));
+    instances_.place(commands, transforms_of(assembly.instances, moment.worlds));
     for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;
     if (khr)
         build_structures(commands, scene, assembly, *khr);

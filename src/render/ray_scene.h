@@ -10,10 +10,10 @@ namespace peelray {
 
 class RayScene {
   public:
-    /// Uploads the scene in its present moment and builds its cubes; with `khr` the device's own acceleration
-    /// structures instead. Throws Error where it has none.
-    RayScene(Device& device, const Scene& scene, const Assembly& assembly, const CubeChoice& choice,
-             std::optional<StructureUpdate> khr = {});
+    /// Uploads the scene at a moment, which is that of its assembly, and builds its cubes; with `khr` the device's own
+    /// acceleration structures instead. Throws Error where it has none.
+    RayScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+             const CubeChoice& choice, std::optional<StructureUpdate> khr = {});
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 

@@ -48,7 +48,8 @@ CubeChoice choose_automatically(const Device& device, uint32_t triangles, const 
 struct Renderer::Impl {
     Device& device;
     const Assembly assembly;
-    const Scene* moment;  ///< the scene as it is now
+    const Scene& source;
+    Moment moment;
     GpuScene scene;
     std::unique_ptr<SceneCubes> cubes;
     std::unique_ptr<CubeMaps> maps;
@@ -74,11 +75,13 @@ struct Renderer::Impl {
     TimeTable times;
     double frame_ms = 0;
 
-    Impl(Device& device, const Scene& source, const Assembly& assembly, const Environment& environment)
+    Impl(Device& device, const Scene& source, const Moment& moment, const Assembly& assembly,
+         const Environment& environment)
         : device(device),
           assembly(without_geometry(assembly)),
-          moment(&source),
-          scene(device, source, assembly, environment),
+          source(source),
+          moment(moment),
+          scene(device, source, moment, assembly, environment),
           bodies(device.features.ray_tracing ? structure_bodies(source, assembly) : std::vector<StructureBody>()),
           queues(device),
           commands(device),
@@ -165,15 +168,15 @@ void Renderer::Impl::prepare_cubes() {
     if (cubes && cubes->choice() == choice) return;
     build_fits = false;
     cubes.reset();  // first, so that both never live at once
-    cubes = std::make_unique<SceneCubes>(device, assembly, choice, smallest_scales(assembly, world_matrices(*moment)));
+    cubes = std::make_unique<SceneCubes>(device, assembly, choice, smallest_scales(assembly, moment.worlds));
 }
 
 void Renderer::Impl::prepare_maps() {
     const MemoryPart part(device, "cube maps");
     if (!maps) {
-        maps = std::make_unique<CubeMaps>(device, scene, *moment, flatten(*moment));
+        maps = std::make_unique<CubeMaps>(device, scene, source, flatten(source, moment));
     } else if (maps_moved) {
-        maps->move(flatten(*moment));
+        maps->move(flatten(source, moment));
     }
     maps_moved = false;
     maps->prepare(commands, settings, frame, box);
@@ -207,7 +210,7 @@ void Renderer::Impl::prepare_frame() {
     const uint32_t rows = (settings.height + 7) / 8 * 8;
     band_rows = uint32_t(std::clamp<uint64_t>(most / row_pixels / 8 * 8, 8, rows));
 
-    box = settings.bounds ? *settings.bounds : bounds(*moment);
+    box = settings.bounds ? *settings.bounds : bounds(source, moment);
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     frame.width = settings.width;
@@ -581,17 +584,18 @@ void Renderer::Impl::render_ray_setup(Aovs& aovs) {
 /// The part of the program that what is uploaded is accounted for as.
 static constexpr const char* kScenePart = "scene";
 
-Renderer::Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment) {
+Renderer::Renderer(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+                   const Environment& environment) {
     const MemoryPart part(device, kScenePart);
-    impl_ = std::make_unique<Impl>(device, scene, assembly, environment);
+    impl_ = std::make_unique<Impl>(device, scene, moment, assembly, environment);
 }
 
 Renderer::~Renderer() = default;
 
-void Renderer::pose(const Scene& scene) {
+void Renderer::pose(const Moment& moment) {
     const MemoryPart part(impl_->device, kScenePart);
-    impl_->moment = &scene;
-    impl_->moved = impl_->scene.pose(impl_->commands, scene);
+    impl_->moment = moment;
+    impl_->moved = impl_->scene.pose(impl_->commands, impl_->source, moment);
     impl_->maps_moved = true;
     impl_->build_fits = false;
     impl_->structures_moved |= impl_->moved > 0;

@@ -10,6 +10,7 @@
 #include "render/cost_counter.h"
 #include "render/cube_maps.h"
 #include "render/scene_cubes.h"
+#include "scene/moment.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -88,15 +89,17 @@ struct RenderResult : Picture {
 /// What `auto` stands for in a scene of so many triangles.
 CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings);
 
-/// Renders pictures of one scene, in the moments it is put into; keeps its buffers and cubes from picture to picture.
+/// Renders pictures of one scene at one moment or another; keeps its buffers and cubes from picture to picture.
 class Renderer {
   public:
-    /// `assembly`: of this scene. The moment is that which the scene is in.
-    Renderer(Device& device, const Scene& scene, const Assembly& assembly, const Environment& environment);
+    /// `scene`, which must outlive it, at `moment`; `assembly`: of this scene, at any moment.
+    Renderer(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
+             const Environment& environment);
     ~Renderer();
 
-    /// Takes on the moment that the same scene is in now; `scene` must not be changed before the next call.
-    void pose(const Scene& scene);
+    /// Takes on another moment of the scene. What is generated must have been placed (Simulation) for Tracer::cubemap
+    /// only: its maps stand in the middle of objects, whose boxes the CPU knows.
+    void pose(const Moment& moment);
 
     /// Throws Error for impossible settings (naming the option) or when the device's limits or memory do not do.
     /// `progress` is told the share done, [0, 1].

@@ -21,7 +21,7 @@ inline std::vector<InstanceInfo> instance_infos(const Assembly& assembly) {
     return infos;
 }
 
-/// Where the instances stand; `worlds`: of all nodes (world_matrices).
+/// Where the instances stand; `worlds`: of all nodes (Moment::worlds).
 inline std::vector<GpuTransform> transforms_of(const std::vector<Assembly::Instance>& instances,
                                                const std::vector<glm::mat4>& worlds) {
     std::vector<GpuTransform> transforms;

@@ -81,6 +81,21 @@ Deformed transformed(const Primitive& primitive, const glm::mat4& matrix) {
     return out;
 }
 
+Primitive with_surface(const Primitive& primitive, const Moment::Surface& surface) {
+    Primitive moved = primitive;
+    moved.positions = surface.positions;
+    moved.normals = surface.normals;
+    return moved;
+}
+
+Deformed placed(const Scene& scene, const Moment& moment, size_t node, const Primitive& primitive) {
+    const glm::mat4& world = moment.worlds[node];
+    if (const Moment::Surface* surface = moment.surface_of(int(node)))
+        return transformed(with_surface(primitive, *surface), world);
+    if (is_rigid(primitive, scene.nodes[node])) return transformed(primitive, world);
+    return deform(scene, scene.nodes[node], primitive, weights_of(scene, moment, node), moment.worlds, world);
+}
+
 void check_finite(const glm::vec3& p, const Node& node, size_t vertex) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         fail("node \"{}\": vertex {} leaves the range of 32-bit floats when transformed; scale the scene down",

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 namespace peelray {
 
@@ -18,6 +18,9 @@ inline bool is_rigid(const Primitive& primitive, const Node& node) {
     return primitive.targets.empty() && (primitive.joints.empty() || node.skin < 0);
 }
 
+/// A primitive with other vertices.
+Primitive with_surface(const Primitive& primitive, const Moment::Surface& surface);
+
 /// Morphs (glTF 2.0, section 3.7.2.2), then moves: by the skin's joints (section 3.7.3.3), or by the node where a
 /// vertex has none. `worlds`: of all nodes. Normals come out unit; those of flat primitives are the moved triangles'
 /// own.
@@ -26,6 +29,9 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
 
 /// The same for a primitive whose shape at rest is all that there is.
 Deformed transformed(const Primitive& primitive, const glm::mat4& matrix);
+
+/// Where the vertices of a node's primitive are at a moment.
+Deformed placed(const Scene& scene, const Moment& moment, size_t node, const Primitive& primitive);
 
 /// Throws Error, naming the node, for a vertex that a transform moved out of the range of floats.
 void check_finite(const glm::vec3& position, const Node& node, size_t vertex);

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "scene/deform.h"
-#include "scene/scene.h"
+#include "scene/moment.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -63,6 +63,10 @@ void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first,
 }  // namespace
 
 Geometry flatten(const Scene& scene) {
+    return flatten(scene, at_rest(scene));
+}
+
+Geometry flatten(const Scene& scene, const Moment& moment) {
     const Totals totals = count(scene);
     check_size(scene, totals.vertices, totals.triangles);
     Geometry out;
@@ -74,7 +78,6 @@ Geometry flatten(const Scene& scene) {
     out.materials.reserve(totals.triangles);
     out.lower = glm::vec3(INFINITY);
     out.upper = glm::vec3(-INFINITY);
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
     for (size_t n = 0; n < scene.nodes.size(); ++n) {
         const Node& node = scene.nodes[n];
         if (node.mesh < 0) continue;
@@ -82,10 +85,7 @@ Geometry flatten(const Scene& scene) {
         const auto first_triangle = static_cast<uint32_t>(out.triangles.size());
         for (const Primitive& primitive : mesh.primitives) {
             const auto first = static_cast<uint32_t>(out.positions.size());
-            const std::vector<float>& weights = node.weights.empty() ? mesh.weights : node.weights;
-            const Deformed vertices = is_rigid(primitive, node)
-                                          ? transformed(primitive, worlds[n])
-                                          : deform(scene, node, primitive, weights, worlds, worlds[n]);
+            const Deformed vertices = placed(scene, moment, n, primitive);
             append_vertices(out, vertices, node);
             append_attributes(out, primitive, totals);
             append_triangles(out, primitive, first, vertices.mirrors);

@@ -1,5 +1,5 @@
 // Geometry that is not animated by keys but computed for every moment: a water surface, thousands of bodies in flight.
-// On the GPU passes of its own make it (src/render/generators), and nobody reads it back; simulate() is their twin on
+// On the GPU passes of its own make it (src/render/generators), and nobody reads it back; Simulation is their twin on
 // the CPU.
 #pragma once
 
@@ -8,8 +8,6 @@
 #include <vector>
 
 namespace peelray {
-
-struct Scene;
 
 /// A square of water in still air: heights h over a grid, after the wave equation h'' = c² ∆h - k h' with walls that
 /// reflect, by explicit steps of equal length (semi-implicit Euler: velocities first). Drops fall into it.
@@ -33,10 +31,6 @@ struct Water {
     };
     std::vector<Float> floats;
 
-    // Where the twin on the CPU is.
-    uint64_t step = 0;
-    std::vector<double> heights, velocities;  ///< empty: at time 0
-
     float spacing() const { return size / float(cells); }
 };
 
@@ -51,11 +45,11 @@ struct WaterDrop {
 WaterDrop drop_at(const Water& water, uint64_t step);
 
 /// Whole steps up to a moment, and what is left of it, seconds.
-struct WaterMoment {
+struct WaterSteps {
     uint64_t steps;
     double rest;
 };
-WaterMoment moment_of(const Water& water, double time);
+WaterSteps steps_until(const Water& water, double time);
 
 /// Where a float is at a moment: x, z, and how far it has turned about the vertical, radians.
 glm::vec3 drift_of(const Water::Float& f, double time);
@@ -71,7 +65,6 @@ struct Generated {
     std::vector<Water> waters;
     std::vector<Swarm> swarms;
     int animation = -1;
-    double time = 0;  ///< the moment that the scene was put into, seconds
     /// All that is generated stays inside this box, at any time.
     struct Reach {
         glm::vec3 lower{0}, upper{0};
@@ -79,10 +72,5 @@ struct Generated {
 
     bool empty() const { return waters.empty() && swarms.empty(); }
 };
-
-/// Puts what is generated into the moment scene.generated.time: vertices of meshes, places of nodes. animate() only
-/// sets the moment: who looks at geometry on the CPU calls this afterwards. The result depends on nothing but the
-/// moment.
-void simulate(Scene& scene);
 
 }  // namespace peelray

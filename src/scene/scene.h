@@ -1,5 +1,6 @@
-// The scene as it was read: meshes, materials, textures, a node hierarchy, lights and cameras. No GPU in sight.
-// Conventions (docs/conventions.md): right-handed, +y up, metres; colours linear Rec. 709; angles in radians.
+// The scene as it was read, which never changes (a moment of its animations is a Moment): meshes, materials, textures,
+// a node hierarchy, lights and cameras. No GPU in sight. Conventions (docs/conventions.md): right-handed, +y up,
+// metres; colours linear Rec. 709; angles in radians.
 #pragma once
 
 #include <array>
@@ -101,7 +102,6 @@ struct Camera {
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
-    float look_distance = 0;        ///< of look from eye while a node carries it; 0: it was not carried yet
 };
 
 struct Light {
@@ -122,10 +122,9 @@ struct Node {
     int mesh = -1, camera = -1, light = -1, skin = -1;
     Placement rest;              ///< what animations start from; unused where `fixed`
     bool fixed = true;           ///< no animation can move it: the file gives a matrix, or the scene is no glTF file
-    std::vector<float> weights;  ///< of its mesh's morph targets now; empty: the mesh's own
-    std::vector<float> rest_weights;  ///< the same at rest
-    int source = -1;                  ///< glTF: index into the file's own nodes (animations and skins speak of those);
-                                      ///< -1: one of a node's instances
+    std::vector<float> weights;  ///< of its mesh's morph targets; empty: the mesh's own
+    int source = -1;             ///< glTF: index into the file's own nodes (animations and skins speak of those);
+                                 ///< -1: one of a node's instances
 };
 
 /// Where light comes from on a miss.
@@ -194,10 +193,8 @@ struct Geometry {
     uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
 };
 
-/// World matrices of all nodes.
-std::vector<glm::mat4> world_matrices(const Scene& scene);
-
-/// World-space triangles of the whole scene (see Geometry). Throws Error when there is no triangle, naming the scene.
+/// World-space triangles of the whole scene at rest (see Geometry). Throws Error when there is no triangle, naming the
+/// scene.
 Geometry flatten(const Scene& scene);
 
 /// A camera that sees the whole box from slightly above and to the right, with a 40° vertical field of view.

@@ -55,14 +55,14 @@ struct Builder {
         animate(node, Path::rotation, {0, 0, 0, 1, 0, s, 0, s});
     }
     Assembly take_apart(const std::string& which = "0") {
-        return assemble(scene, motion_of(scene, scene.animations.empty() ? "" : which));
+        return assemble(scene, at_rest(scene), motion_of(scene, scene.animations.empty() ? "" : which));
     }
 };
 
-/// Puts the bodies that do not deform together again, as the scene stands now, and compares with flatten().
-void expect_whole(const Scene& scene, const Assembly& assembly, double tolerance) {
-    const Geometry geometry = flatten(scene);
-    const std::vector<glm::mat4> worlds = world_matrices(scene);
+/// Puts the bodies that do not deform together again, as they stand at a moment, and compares with flatten().
+void expect_whole(const Scene& scene, const Moment& moment, const Assembly& assembly, double tolerance) {
+    const Geometry geometry = flatten(scene, moment);
+    const std::vector<glm::mat4>& worlds = moment.worlds;
     EXPECT_EQ(assembly.shown, geometry.triangles.size());
     std::vector<int> seen(geometry.triangles.size());
     std::vector<uint32_t> owners(geometry.triangles.size());
@@ -134,7 +134,7 @@ TEST(Assembly, WhatStandsStillIsOneBodyInTheWorld) {
     EXPECT_EQ(assembly.instances[0].node, -1);
     EXPECT_EQ(assembly.instances[0].offset, glm::mat4(1));
     expect_ordered(assembly);
-    expect_whole(build.scene, assembly, 1e-6);
+    expect_whole(build.scene, at_rest(build.scene), assembly, 1e-6);
 }
 
 TEST(Assembly, WhatMovesAsOneIsOneBodyThatIsNeverRebuilt) {
@@ -150,8 +150,7 @@ TEST(Assembly, WhatMovesAsOneIsOneBodyThatIsNeverRebuilt) {
     EXPECT_TRUE(assembly.pieces.empty());
     expect_ordered(assembly);
     for (const double time : {0.0, 0.3, 1.0}) {
-        animate(build.scene, "0", time);
-        expect_whole(build.scene, assembly, 3e-6);
+        expect_whole(build.scene, moment_of(build.scene, "0", time), assembly, 3e-6);
     }
 }
 
@@ -160,12 +159,12 @@ TEST(Assembly, ChannelsThatChangeNothingMoveNothing) {
     const int node = build.node(build.mesh(sphere({0, 0, 0}, 1, 4)));
     build.animate(node, Path::translation, {1, 2, 3, 1, 2, 3});
     build.animate(node, Path::scale, {2, 2, 2, 2, 2, 2});
-    animate(build.scene, "0", 0);
-    const Assembly assembly = build.take_apart();
+    const Moment moment = moment_of(build.scene, "0", 0);
+    const Assembly assembly = assemble(build.scene, moment, motion_of(build.scene, "0"));
     ASSERT_EQ(assembly.instances.size(), 1u);
     EXPECT_EQ(assembly.instances[0].node, -1);
     EXPECT_TRUE(assembly.pieces.empty());
-    expect_whole(build.scene, assembly, 1e-6);
+    expect_whole(build.scene, moment, assembly, 1e-6);
 }
 
 TEST(Assembly, AScaleThatChangesIsADeformation) {
@@ -181,8 +180,7 @@ TEST(Assembly, AScaleThatChangesIsADeformation) {
     EXPECT_EQ(assembly.pieces[0].node, child);
     expect_ordered(assembly);
     for (const double time : {0.0, 0.5}) {
-        animate(build.scene, "0", time);
-        expect_whole(build.scene, assembly, 1e-6);
+        expect_whole(build.scene, moment_of(build.scene, "0", time), assembly, 1e-6);
     }
 }
 
@@ -212,7 +210,7 @@ TEST(Assembly, LargeMeshesAreShared) {
     EXPECT_EQ(assembly.instances.size(), 5u);
     EXPECT_EQ(assembly.triangles.size() * 5, assembly.shown);
     expect_ordered(assembly);
-    expect_whole(build.scene, assembly, 1e-5);
+    expect_whole(build.scene, at_rest(build.scene), assembly, 1e-5);
 }
 
 TEST(Assembly, SmallMeshesAreSharedWhereThereAreManyOrWhereTheyMove) {
@@ -228,8 +226,7 @@ TEST(Assembly, SmallMeshesAreSharedWhereThereAreManyOrWhereTheyMove) {
     const Assembly assembly = moving.take_apart();
     EXPECT_EQ(assembly.instances.size(), 6u);
     EXPECT_EQ(assembly.bodies.size(), 1u);
-    animate(moving.scene, "0", 0.7);
-    expect_whole(moving.scene, assembly, 1e-5);
+    expect_whole(moving.scene, moment_of(moving.scene, "0", 0.7), assembly, 1e-5);
 }
 
 TEST(Assembly, SkinsDeformWhileAJointMoves) {
@@ -248,7 +245,8 @@ TEST(Assembly, SkinsDeformWhileAJointMoves) {
     EXPECT_EQ(assembly.fixed, 1u);
     ASSERT_EQ(assembly.pieces.size(), 1u);
     EXPECT_EQ(assembly.bodies[1].triangles, shape.triangles.size());
-    EXPECT_TRUE(assemble(build.scene, motion_of(build.scene, "")).pieces.empty()) << "without the animation";
+    EXPECT_TRUE(assemble(build.scene, at_rest(build.scene), motion_of(build.scene, "")).pieces.empty())
+        << "without the animation";
 }
 
 TEST(Assembly, WeightsThatChangeAreADeformation) {
@@ -274,9 +272,9 @@ TEST(Assembly, OfBuiltInScenesIsTheScene) {
     for (const char* name : {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:blob:5000"}) {
         SCOPED_TRACE(name);
         const Scene scene = load_scene(name);
-        const Assembly assembly = assemble(scene, motion_of(scene, ""));
+        const Assembly assembly = assemble(scene, at_rest(scene), motion_of(scene, ""));
         expect_ordered(assembly);
-        expect_whole(scene, assembly, 1e-5);
+        expect_whole(scene, at_rest(scene), assembly, 1e-5);
         EXPECT_EQ(assembly.fixed, assembly.bodies.size());
         EXPECT_LE(assembly.bodies.size(), 6u) << "what lies together stays together";
     }
@@ -298,14 +296,14 @@ TEST(Assembly, OfModelsIsTheScene) {
                 continue;
             }
             const std::string which = scene.animations.empty() ? "" : "all";
-            const Assembly assembly = assemble(scene, motion_of(scene, which));
+            const Assembly assembly = assemble(scene, at_rest(scene), motion_of(scene, which));
             expect_ordered(assembly);
             for (const double time : {0.0, 0.4, 1.1}) {
-                if (!which.empty()) animate(scene, which, time);
-                const Geometry geometry = flatten(scene);
+                const Moment moment = moment_of(scene, which, time);
+                const Geometry geometry = flatten(scene, moment);
                 // At rest nothing deforms; moved, what does is compared elsewhere.
                 const Assembly now = which.empty() ? assembly : Assembly(assembly);
-                expect_whole(scene, now, 1e-5 * glm::length(geometry.upper - geometry.lower) + 1e-6);
+                expect_whole(scene, moment, now, 1e-5 * glm::length(geometry.upper - geometry.lower) + 1e-6);
                 if (::testing::Test::HasFatalFailure()) return;
             }
             compared++;

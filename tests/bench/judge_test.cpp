@@ -31,7 +31,7 @@ class Fake : public RayContender {
 class JudgeTest : public testing::Test {
   protected:
     JudgeTest() : scene_(load_scene("builtin:blob:2000")), geometry_(flatten(scene_)), oracle_(geometry_) {
-        RaySetView view{scene_.cameras.front(), 120, 96, bounds(scene_), {}};
+        RaySetView view{scene_.cameras.front(), 120, 96, bounds(scene_, at_rest(scene_)), {}};
         view.light.direction = {0, -1, 0};
         const RaySets sets = make_ray_sets(scene_, geometry_, oracle_, view, {RayKind::mirror, RayKind::shadow});
         mirror_ = rays_of(sets[size_t(RayKind::mirror)]);

@@ -22,21 +22,20 @@ const Mesh& figure(const Scene& scene) {
 }
 
 /// The figure's vertices now, in the order of figure()'s primitives, and its triangles.
-struct Moment {
+struct Figure {
     std::vector<vec3> positions, normals;
     std::vector<glm::uvec3> triangles;
 };
 
-Moment moment(Scene scene) {
+Figure figure_at(Scene scene, const Moment& moment) {
     for (Node& node : scene.nodes)
         if (node.skin < 0) node.mesh = -1;
-    const Geometry g = flatten(scene);
+    const Geometry g = flatten(scene, moment);
     return {g.positions, g.normals, g.triangles};
 }
 
-Moment moment(Scene& scene, const char* animation, double time) {
-    animate(scene, animation, time);
-    return moment(scene);
+Figure figure_at(const Scene& scene, const char* animation, double time) {
+    return figure_at(scene, moment_of(scene, animation, time));
 }
 
 const Scene& walker() {
@@ -109,7 +108,7 @@ TEST(Walker, WeightsAreSound) {
     for (size_t joint = 1; joint < joint_count; ++joint) EXPECT_GT(leads[joint], 20u) << walker_joints()[joint].name;
 }
 
-size_t normals_against_triangles(const Moment& m) {
+size_t normals_against_triangles(const Figure& m) {
     size_t against = 0;
     for (const glm::uvec3& t : m.triangles) {
         const vec3 face = glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]);
@@ -120,10 +119,10 @@ size_t normals_against_triangles(const Moment& m) {
 
 TEST(Walker, NormalsAreUnitAndAgreeWithTheTriangles) {
     Scene scene = walker();
-    EXPECT_EQ(normals_against_triangles(moment(scene)), 0u);
+    EXPECT_EQ(normals_against_triangles(figure_at(scene, at_rest(scene))), 0u);
     for (const char* name : {"walk", "wave"})
         for (double time = 0; time < 0.9; time += 0.1) {
-            const Moment m = moment(scene, name, time);
+            const Figure m = figure_at(scene, name, time);
             for (const vec3& n : m.normals) ASSERT_NEAR(glm::length(n), 1, 1e-4);
             // A few may fold over deep in a crease, where an arm meets the ribs.
             EXPECT_LE(normals_against_triangles(m), 8u) << name << " " << time;
@@ -133,8 +132,8 @@ TEST(Walker, NormalsAreUnitAndAgreeWithTheTriangles) {
 /// The largest change of speed of any vertex at a moment, m/s; before the start lies the end.
 double largest_jerk(Scene& scene, const char* name, double time, double duration) {
     constexpr double step = 0.004;
-    const Moment before = moment(scene, name, time > 0 ? time - step : duration - step),
-                 now = moment(scene, name, time), after = moment(scene, name, time + step);
+    const Figure before = figure_at(scene, name, time > 0 ? time - step : duration - step),
+                 now = figure_at(scene, name, time), after = figure_at(scene, name, time + step);
     double largest = 0;
     for (size_t i = 0; i < now.positions.size(); ++i) {
         const vec3 change = (after.positions[i] - now.positions[i]) - (now.positions[i] - before.positions[i]);
@@ -152,7 +151,7 @@ TEST(Walker, AnimationsLoop) {
         const double duration = animation.duration;
         EXPECT_GT(duration, 0.5);
         EXPECT_LT(duration, 10);
-        const Moment start = moment(scene, name, 0), end = moment(scene, name, duration);
+        const Figure start = figure_at(scene, name, 0), end = figure_at(scene, name, duration);
         for (size_t i = 0; i < start.positions.size(); ++i) {
             ASSERT_LT(glm::distance(start.positions[i], end.positions[i]), 1e-6f);
             ASSERT_LT(glm::distance(start.normals[i], end.normals[i]), 1e-5f);
@@ -172,7 +171,7 @@ TEST(Walker, WalksItsCircle) {
     vec3 last(0);
     for (int i = 0; i <= 40; ++i) {
         vec3 middle(0);
-        const Moment m = moment(scene, "walk", duration * i / 40);
+        const Figure m = figure_at(scene, "walk", duration * i / 40);
         for (const vec3& p : m.positions) middle += p / float(m.positions.size());
         middle.y = 0;
         EXPECT_NEAR(glm::length(middle), 1.2, 0.08);
@@ -188,10 +187,10 @@ TEST(Walker, WalksItsCircle) {
 TEST(Walker, FeetStandOnTheFloorAndHardlySlide) {
     Scene scene = walker();
     constexpr int samples = 96;
-    Moment last;
+    Figure last;
     for (int i = 0; i <= samples; ++i) {
         SCOPED_TRACE(i);
-        const Moment now = moment(scene, "walk", stride_of(scene) * i / samples);
+        const Figure now = figure_at(scene, "walk", stride_of(scene) * i / samples);
         float lowest = 1;
         for (const vec3& p : now.positions) lowest = std::min(lowest, p.y);
         EXPECT_GT(lowest, -0.0005f);
@@ -214,9 +213,9 @@ TEST(Walker, AStandingFootStaysWhereItIs) {
     Scene scene = walker();
     const std::vector<Joint> joints = leading_joints(scene);
     for (const auto& [foot, from] : {std::pair{Joint::left_foot, 0.0}, std::pair{Joint::right_foot, 0.5}}) {
-        const Moment start = moment(scene, "walk", (from + 0.10) * stride_of(scene)),
-                     middle = moment(scene, "walk", (from + 0.213) * stride_of(scene)),
-                     end = moment(scene, "walk", (from + 0.32) * stride_of(scene));
+        const Figure start = figure_at(scene, "walk", (from + 0.10) * stride_of(scene)),
+                     middle = figure_at(scene, "walk", (from + 0.213) * stride_of(scene)),
+                     end = figure_at(scene, "walk", (from + 0.32) * stride_of(scene));
         size_t looked_at = 0;
         for (size_t i = 0; i < joints.size(); ++i) {
             if (joints[i] != foot || start.positions[i].y > 0.03f) continue;
@@ -230,15 +229,15 @@ TEST(Walker, AStandingFootStaysWhereItIs) {
 
 TEST(Walker, SkinNeitherCollapsesNorTears) {
     Scene scene = walker();
-    const Moment rest = moment(walker());
-    const auto area = [](const Moment& m, size_t t) {
+    const Figure rest = figure_at(walker(), at_rest(walker()));
+    const auto area = [](const Figure& m, size_t t) {
         const glm::uvec3& c = m.triangles[t];
         return glm::length(glm::cross(m.positions[c.y] - m.positions[c.x], m.positions[c.z] - m.positions[c.x]));
     };
     for (const char* name : {"walk", "wave"})
         for (int i = 0; i < 16; ++i) {
             SCOPED_TRACE(fmt::format("{} {}", name, i));
-            const Moment now = moment(scene, name, 0.94 * i / 16);
+            const Figure now = figure_at(scene, name, 0.94 * i / 16);
             float least = 1, most = 1, all = 0, all_at_rest = 0;
             for (size_t t = 0; t < rest.triangles.size(); ++t) {
                 const float before = area(rest, t), after = area(now, t);
@@ -263,7 +262,7 @@ TEST(Walker, LegsKeepClearOfEachOther) {
         if (joints[i] >= Joint::right_shin && joints[i] <= Joint::right_toes) right.push_back(i);
     }
     for (int i = 0; i < 24; ++i) {
-        const Moment m = moment(scene, "walk", stride_of(scene) * i / 24);
+        const Figure m = figure_at(scene, "walk", stride_of(scene) * i / 24);
         float nearest = 1;
         for (const size_t a : left)
             for (const size_t b : right) {
@@ -275,7 +274,7 @@ TEST(Walker, LegsKeepClearOfEachOther) {
 }
 
 TEST(Walker, StandsAtRest) {
-    const Moment rest = moment(walker());
+    const Figure rest = figure_at(walker(), at_rest(walker()));
     float lowest = 1, highest = 0, widest = 0;
     for (const vec3& p : rest.positions) lowest = std::min(lowest, p.y), highest = std::max(highest, p.y);
     vec3 middle(0);

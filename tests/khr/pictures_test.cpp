@@ -20,9 +20,12 @@ class KhrPictures : public KhrTest {
     };
     Shown show(const std::string& name, double time = -1) {
         Shown shown{load_scene(name), {}, {}};
-        if (time >= 0) shown.animation = "0", animate(shown.scene, "0", time);
-        shown.renderer = std::make_unique<Renderer>(
-            device(), shown.scene, assemble(shown.scene, motion_of(shown.scene, shown.animation)), sky_);
+        if (time >= 0) shown.animation = "0";
+        complete_targets(shown.scene);
+        const Moment moment = moment_of(shown.scene, shown.animation, time);
+        shown.renderer =
+            std::make_unique<Renderer>(device(), shown.scene, moment,
+                                       assemble(shown.scene, moment, motion_of(shown.scene, shown.animation)), sky_);
         return shown;
     }
     static RenderSettings settings(const Scene& scene, Tracer tracer) {
@@ -87,11 +90,9 @@ TEST_F(KhrPictures, FollowAnAnimation) {
         for (const StructureUpdate update : {StructureUpdate::rebuild, StructureUpdate::refit}) {
             RenderSettings s = settings(moving.scene, Tracer::khr);
             s.structures = update;
-            animate(moving.scene, "0", 0);
-            moving.renderer->pose(moving.scene);
+            moving.renderer->pose(moment_of(moving.scene, "0", 0));
             const RenderResult first = moving.renderer->render(s);
-            animate(moving.scene, "0", 0.4);
-            moving.renderer->pose(moving.scene);
+            moving.renderer->pose(moment_of(moving.scene, "0", 0.4));
             const RenderResult moved = moving.renderer->render(s);
             const Shown fresh = show(name, 0.4);
             const RenderResult cubes = fresh.renderer->render(settings(fresh.scene, Tracer::ldc));

@@ -29,8 +29,9 @@ TEST_P(KhrOnScene, HitsAreThoseOfTheCubesAndTheOracle) {
     const Geometry geometry = flatten(scene);
     const AlphaTest alpha(scene, geometry);
     const Oracle oracle(geometry, alpha);
-    const Assembly assembly = assemble(scene, motion_of(scene, ""));
-    RayScene khr(device(), scene, assembly, {}, StructureUpdate::keep), ldc(device(), scene, assembly, {});
+    const Moment rest = at_rest(scene);
+    const Assembly assembly = assemble(scene, rest, motion_of(scene, ""));
+    RayScene khr(device(), scene, rest, assembly, {}, StructureUpdate::keep), ldc(device(), scene, rest, assembly, {});
     EXPECT_EQ(khr.structures()->stats().bodies, assembly.bodies.size());
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel}) {
         test::RaySource source(geometry, 77);

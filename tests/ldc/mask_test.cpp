@@ -121,9 +121,10 @@ TEST_F(MaskedCubeTest, ConservativeCubesHoldAllTriangles) {
 
 TEST_F(MaskedCubeTest, RaysAgreeWithTheOracle) {
     // As `peelray trace` traces them: two of the bodies are placed by a transform that mirrors.
-    const Assembly assembly = assemble(scene_, motion_of(scene_, ""));
+    const Moment rest = at_rest(scene_);
+    const Assembly assembly = assemble(scene_, rest, motion_of(scene_, ""));
     const Oracle oracle(geometry_, alpha_), opaque(geometry_);
-    RayScene scene(device(), scene_, assembly, {});
+    RayScene scene(device(), scene_, rest, assembly, {});
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel, RayKind::on_surface}) {
         test::RaySource source(geometry_, 99);
         std::vector<Ray> rays(50'000);

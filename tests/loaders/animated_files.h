@@ -52,9 +52,8 @@ inline bool has_note(const Scene& scene, const std::string& words) {
                        [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
-inline std::vector<glm::vec3> positions_at(Scene scene, double time) {
-    animate(scene, "all", time);
-    return flatten(scene).positions;
+inline std::vector<glm::vec3> positions_at(const Scene& scene, double time) {
+    return flatten(scene, moment_of(scene, "all", time)).positions;
 }
 
 inline void expect_near(const glm::vec3& a, const glm::vec3& b) {
@@ -63,11 +62,10 @@ inline void expect_near(const glm::vec3& a, const glm::vec3& b) {
 }
 
 /// At some moments: every vertex and normal is a number, or one line says what is wrong.
-inline void expect_defined(Scene& scene) {
+inline void expect_defined(const Scene& scene) {
     for (size_t i = 0; i < scene.animations.size(); ++i)
         for (const double time : {0.0, 0.25, 0.5, 1.0, 7.3}) try {
-                animate(scene, std::to_string(i), time);
-                const Geometry g = flatten(scene);
+                const Geometry g = flatten(scene, moment_of(scene, std::to_string(i), time));
                 for (const glm::vec3& p : g.positions)
                     ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
                 for (const glm::vec3& n : g.normals) ASSERT_NEAR(glm::length(n), 1, 1e-3);

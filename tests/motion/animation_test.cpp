@@ -119,8 +119,7 @@ TEST(Skin, BendsAStrip) {
     const Geometry rest = flatten(scene);
     for (size_t i = 0; i < rest.positions.size(); i++)
         EXPECT_LT(glm::length(rest.positions[i] - scene.meshes[0].primitives[0].positions[i]), 1e-6f) << i;
-    animate(scene, "bend", 1);  // 45° about z at (0, 1, 0)
-    const Geometry bent = flatten(scene);
+    const Geometry bent = flatten(scene, moment_of(scene, "bend", 1));  // 45° about z at (0, 1, 0)
     const double c = std::sqrt(0.5);
     for (size_t i = 0; i < rest.positions.size(); i++) {
         const glm::dvec3 p = rest.positions[i];
@@ -140,31 +139,26 @@ TEST(Animate, CarriesACameraWithoutDrift) {
         each->cameras.push_back(camera);
         each->nodes[2].camera = 0;
     }
-    for (int i = 0; i < 200; i++) animate(scene, "all", 0.013 * i);
-    animate(scene, "all", 0.7);
-    animate(fresh, "all", 0.7);
-    EXPECT_EQ(scene.cameras[0].look, fresh.cameras[0].look);
-    EXPECT_EQ(scene.cameras[0].eye, fresh.cameras[0].eye);
-    EXPECT_NEAR(glm::length(scene.cameras[0].look - scene.cameras[0].eye), 3.3333333f, 1e-5f);
-    stand_at_rest(scene);
-    EXPECT_LT(glm::length(scene.cameras[0].look - glm::vec3(0, 1, -3.3333333f)), 1e-5f);
+    for (int i = 0; i < 200; i++) moment_of(scene, "all", 0.013 * i);
+    const Camera later = moment_of(scene, "all", 0.7).cameras[0], alone = moment_of(fresh, "all", 0.7).cameras[0];
+    EXPECT_EQ(later.look, alone.look);
+    EXPECT_EQ(later.eye, alone.eye);
+    EXPECT_NEAR(glm::length(later.look - later.eye), 3.3333333f, 1e-5f);
+    EXPECT_LT(glm::length(at_rest(scene).cameras[0].look - glm::vec3(0, 1, -3.3333333f)), 1e-5f);
     EXPECT_EQ(flatten(scene).positions, flatten(strip()).positions);
 }
 
 TEST(Animate, ForgetsWhatWasBefore) {
-    Scene scene = strip(), fresh = strip();
-    animate(scene, "move", 1);
-    EXPECT_FLOAT_EQ(flatten(scene).positions[0].z, 3);
-    animate(scene, "bend", 1.7);
-    animate(fresh, "0", 1.7);
-    EXPECT_EQ(flatten(scene).positions, flatten(fresh).positions);
+    const Scene scene = strip(), fresh = strip();
+    const auto positions = [](const Scene& of, const char* which, double time) {
+        return flatten(of, moment_of(of, which, time)).positions;
+    };
+    EXPECT_FLOAT_EQ(positions(scene, "move", 1)[0].z, 3);
+    EXPECT_EQ(positions(scene, "bend", 1.7), positions(fresh, "0", 1.7));
     // Beyond its end it starts again; all at once moves both.
-    animate(fresh, "bend", 1.5);
-    animate(scene, "bend", 3.5);
-    EXPECT_EQ(flatten(scene).positions, flatten(fresh).positions);
-    animate(scene, "all", 1);
-    EXPECT_FLOAT_EQ(flatten(scene).positions[0].z, 3);
-    EXPECT_LT(flatten(scene).positions[9].x, -0.5f);
+    EXPECT_EQ(positions(fresh, "bend", 1.5), positions(scene, "bend", 3.5));
+    EXPECT_FLOAT_EQ(positions(scene, "all", 1)[0].z, 3);
+    EXPECT_LT(positions(scene, "all", 1)[9].x, -0.5f);
 }
 
 TEST(Animate, CamerasAndLightsFollowTheirNodes) {
@@ -174,17 +168,17 @@ TEST(Animate, CamerasAndLightsFollowTheirNodes) {
     scene.cameras[0].eye = {0, 0, 0};
     scene.lights.resize(1);
     scene.nodes[1].camera = scene.nodes[1].light = 0;
-    animate(scene, "move", 0.5);
-    EXPECT_EQ(scene.cameras[0].eye, glm::vec3(0, 0, 1.5f));
-    EXPECT_EQ(scene.cameras[0].look, glm::vec3(0, 0, -2.5f));
-    EXPECT_EQ(scene.lights[0].position, glm::vec3(0, 0, 1.5f));
+    const Moment moment = moment_of(scene, "move", 0.5);
+    EXPECT_EQ(moment.cameras[0].eye, glm::vec3(0, 0, 1.5f));
+    EXPECT_EQ(moment.cameras[0].look, glm::vec3(0, 0, -2.5f));
+    EXPECT_EQ(moment.lights[0].position, glm::vec3(0, 0, 1.5f));
 }
 
 TEST(Animate, UnknownNamesAreListed) {
     Scene scene = strip();
     const auto message = [&](const std::string& which) -> std::string {
         try {
-            animate(scene, which, 0);
+            moment_of(scene, which, 0);
         } catch (const Error& error) {
             return error.what();
         }
@@ -213,8 +207,7 @@ TEST(Morph, MixesTargetsAndKeepsFlatNormalsFlat) {
     EXPECT_LT(glm::length(g.normals[0] - glm::normalize(glm::vec3(0, -1, 1))), 1e-6f);
     AnimationChannel weights{0, Path::weights, Interpolation::linear, 2, {0, 1}, {0, 0, 1, 3}};
     scene.animations.push_back({"", 1, {weights}});
-    animate(scene, "all", 0.5);
-    g = flatten(scene);
+    g = flatten(scene, moment_of(scene, "all", 0.5));
     EXPECT_EQ(g.positions[2], glm::vec3(1.5f, 1, 1));
     EXPECT_EQ(g.positions[1], glm::vec3(2.5f, 0, 0));
 }
@@ -237,12 +230,10 @@ TEST(Models, AnimationsStayFiniteAndMove) {
         }
         for (size_t i = 0; i < scene.animations.size(); i++) {
             const float duration = scene.animations[i].duration;
-            animate(scene, std::to_string(i), 0);
-            const Geometry start = flatten(scene);
+            const Geometry start = flatten(scene, moment_of(scene, std::to_string(i), 0));
             bool moves = false;
             for (const float share : {0.13f, 0.37f, 0.5f, 0.91f}) {
-                animate(scene, std::to_string(i), share * duration);
-                const Geometry now = flatten(scene);
+                const Geometry now = flatten(scene, moment_of(scene, std::to_string(i), share * duration));
                 ASSERT_EQ(now.positions.size(), start.positions.size());
                 moves |= now.positions != start.positions;
                 for (const glm::vec3& n : now.normals) ASSERT_NEAR(glm::length(n), 1, 1e-4);

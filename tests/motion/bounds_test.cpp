@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "motion/animation.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -45,9 +46,9 @@ void add_animation(Scene& scene, const char* name, Interpolation interpolation, 
 TEST(Bounds, AtRestAreThoseOfTheTriangles) {
     const Scene scene = pair();
     const Geometry geometry = flatten(scene);
-    EXPECT_EQ(bounds(scene).lower, geometry.lower);
-    EXPECT_EQ(bounds(scene).upper, geometry.upper);
-    EXPECT_EQ(bounds(scene).upper, glm::vec3(1, 1, 0));
+    EXPECT_EQ(bounds(scene, at_rest(scene)).lower, geometry.lower);
+    EXPECT_EQ(bounds(scene, at_rest(scene)).upper, geometry.upper);
+    EXPECT_EQ(bounds(scene, at_rest(scene)).upper, glm::vec3(1, 1, 0));
 }
 
 TEST(Bounds, ReachWhereverTheAnimationGoes) {
@@ -99,6 +100,7 @@ TEST(Bounds, FollowTargetsThatAreMadeLater) {
         return std::vector<MorphTarget>{{std::vector<glm::vec3>(p.positions.size(), glm::vec3(0, 0, 2)), {}}};
     };
     scene.animations.push_back({"morph", 1, {{1, Path::weights, Interpolation::linear, 1, {0, 1}, {0, 1.5f}}}});
+    complete_targets(scene);
     EXPECT_EQ(bounds_over(scene, "morph").upper, glm::vec3(1, 1, 3));
 }
 
@@ -106,7 +108,7 @@ TEST(Bounds, FollowSkinsAndMorphTargets) {
     Scene scene = pair();
     Primitive& p = scene.meshes[0].primitives[0];
     p.targets.push_back({std::vector<glm::vec3>(p.positions.size(), glm::vec3(0, 0, 2)), {}});
-    scene.nodes[1].rest_weights = {0};
+    scene.nodes[1].weights = {0};
     scene.animations.push_back({"morph", 1, {{1, Path::weights, Interpolation::linear, 1, {0, 1}, {0, 1.5f}}}});
     EXPECT_EQ(bounds_over(scene, "morph").upper, glm::vec3(1, 1, 3));
 

@@ -100,7 +100,7 @@ TEST_F(PovRayTest, CameraRaysMeetTheSamePoints) {
         settings.aovs = true;
         settings.camera = scene.cameras.empty() ? frame_box(geometry.lower, geometry.upper, 1.25f) : scene.cameras[0];
         const Environment black = color_environment(glm::vec3(0));
-        const Picture picture = PathTracer(scene, geometry, black).render(settings);
+        const Picture picture = PathTracer(scene, at_rest(scene), geometry, black).render(settings);
         write_scene(geometry, make_view(settings.camera, 1.25f, geometry.lower, geometry.upper));
         ASSERT_TRUE(run_povray(settings.width, settings.height));
         const Image positions = read_ppm16(get(folder / "out.ppm"));

@@ -77,7 +77,7 @@ TEST_F(PathTracerTest, AuxiliaryPicturesAreTheOraclesHits) {
 TEST_F(PathTracerTest, AnInterruptEndsAllThreads) {
     const Stage stage = small_world();
     const Geometry geometry = flatten(stage.scene);
-    const PathTracer tracer(stage.scene, geometry, white);
+    const PathTracer tracer(stage.scene, at_rest(stage.scene), geometry, white);
     int calls = 0;
     const auto stop = [&](double share) {
         EXPECT_GE(share, 0);

@@ -29,7 +29,7 @@ class PictureTest : public testing::Test {
         if (settings.tracer == Tracer::none)
             settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
         const Geometry geometry = flatten(stage.scene);
-        return PathTracer(stage.scene, geometry, environment).render(settings, {}, threads);
+        return PathTracer(stage.scene, at_rest(stage.scene), geometry, environment).render(settings, {}, threads);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };

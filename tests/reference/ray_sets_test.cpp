@@ -23,7 +23,7 @@ class RaySetsTest : public testing::Test {
         scene_ = build.take();
         geometry_ = flatten(scene_);
         oracle_ = std::make_unique<Oracle>(geometry_);
-        view_ = {scene_.cameras.front(), 44, 30, bounds(scene_), {}};
+        view_ = {scene_.cameras.front(), 44, 30, bounds(scene_, at_rest(scene_)), {}};
         view_.light.kind = Light::Kind::point;
         view_.light.position = {1, 4, 1};
     }

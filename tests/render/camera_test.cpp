@@ -60,7 +60,7 @@ Stage still_life(const glm::vec3& offset) {
 // The paper's Figure 7.
 TEST_F(CameraTest, MirrorRaysAreSetUpAsThePaperHasThem) {
     const Stage stage = still_life({0, 0, 0});
-    const Box box = bounds(stage.scene);
+    const Box box = bounds(stage.scene, at_rest(stage.scene));
     for (const Camera& camera : {perspective({3, 4, 7}, {0, 1, 0}, 50), orthographic({3, 4, 7}, {0, 1, 0}, 6)}) {
         RenderSettings settings = settings_for(camera, 96);
         settings.aovs = settings.ray_setup = true;

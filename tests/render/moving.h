@@ -4,6 +4,7 @@
 #include <pictures.h>
 
 #include "motion/animation.h"
+#include "motion/simulation.h"
 #include "render/gpu_scene.h"
 #include "render/scene_cubes.h"
 
@@ -11,38 +12,41 @@ namespace peelray {
 
 /// What the GPU made of a moment, as a file would have it.
 struct MovedScene {
-    Scene& scene;
+    const Scene& scene;
     std::string which;
+    Moment moment;
+    Simulation simulation;
     Assembly assembly;
     GpuScene gpu;
     SceneCubes cubes;
     Commands commands;
 
-    MovedScene(Device& device, Scene& source, const std::string& animation, const CubeChoice& choice = {})
+    MovedScene(Device& device, const Scene& source, const std::string& animation, const CubeChoice& choice = {})
         : scene(source),
           which(animation),
-          assembly(assemble(source, motion_of(source, animation))),
-          gpu(device, source, assembly, color_environment(glm::vec3(1))),
+          moment(moment_of(source, animation, 0)),
+          assembly(assemble(source, moment, motion_of(source, animation))),
+          gpu(device, source, moment, assembly, color_environment(glm::vec3(1))),
           cubes(device, assembly, choice, std::vector<float>(assembly.bodies.size(), 1.0f)),
           commands(device) {}
 
     /// Vertices, bounds and instances of the moment.
     void pose(double time) {
-        animate(scene, which, time);
-        gpu.pose(commands, scene);
+        moment = moment_of(scene, which, time);
+        gpu.pose(commands, scene, moment);
         gpu.record_animation(commands, cubes.cubes());
         gpu.instances.record(commands, cubes.cubes());
         commands.submit();
     }
 
-    /// All triangles as they stand in the world, compared with flatten() after simulate(): corners by at most
+    /// All triangles as they stand in the world, compared with flatten() after Simulation::place(): corners by at most
     /// `tolerance`, normals by their angle. Returns the largest distances.
     struct Difference {
         double position = 0, normal = 0;
     };
     Difference compare() {
-        simulate(scene);
-        const Geometry geometry = flatten(scene);
+        simulation.place(scene, moment);
+        const Geometry geometry = flatten(scene, moment);
         const auto positions = commands.download<glm::vec3>(gpu.triangles.positions, assembly.positions.size()),
                    normals = commands.download<glm::vec3>(gpu.normals, assembly.positions.size());
         const auto triangles = commands.download<glm::uvec3>(gpu.triangles.triangles, assembly.triangles.size());

@@ -17,17 +17,14 @@ using Path = AnimationChannel::Path;
 class MovingTest : public PictureTest {
   protected:
     /// A renderer of a scene in a moment, as the command line makes it.
-    std::unique_ptr<Renderer> renderer_in(Scene& scene, const std::string& which, double time,
+    std::unique_ptr<Renderer> renderer_in(const Scene& scene, const std::string& which, double time,
                                           const Environment& environment) {
-        animate(scene, which, 0);
-        const Assembly assembly = assemble(scene, motion_of(scene, which));
-        animate(scene, which, time);
-        return std::make_unique<Renderer>(device(), scene, assembly, environment);
+        const Assembly assembly = assemble(scene, moment_of(scene, which, 0), motion_of(scene, which));
+        return std::make_unique<Renderer>(device(), scene, moment_of(scene, which, time), assembly, environment);
     }
-    RenderResult at(Renderer& renderer, Scene& scene, const std::string& which, double time,
+    RenderResult at(Renderer& renderer, const Scene& scene, const std::string& which, double time,
                     const RenderSettings& settings) {
-        animate(scene, which, time);
-        renderer.pose(scene);
+        renderer.pose(moment_of(scene, which, time));
         return renderer.render(settings);
     }
     static RenderSettings small(const Camera& camera, HitTest hit = HitTest::exact) {
@@ -101,6 +98,8 @@ TEST_F(MovingTest, AFrameIsTheSameAloneAndAfterOthers) {
             SCOPED_TRACE(c.name);
             Scene scene = *c.name ? load_scene(c.name) : three_balls(),
                   other = *c.name ? load_scene(c.name) : three_balls();
+            complete_targets(scene);
+            complete_targets(other);
             const RenderSettings settings = small(scene.cameras.empty() ? kUsualView : scene.cameras[0], hit);
             const auto renderer = renderer_in(scene, "0", c.times.back(), sky);
             std::vector<RenderResult> first;
@@ -163,7 +162,8 @@ TEST_F(MovingTest, AMomentLooksLikeTheSameSceneStandingStill) {
         settings.width = settings.height = 96;
         renderer->render(settings);
         const RenderResult moved = at(*renderer, scene, "0", time, settings);
-        const Geometry geometry = flatten(scene);
+        const Moment moment = moment_of(scene, "0", time);
+        const Geometry geometry = flatten(scene, moment);
         Scene still;
         still.materials = scene.materials;
         Node node;
@@ -180,8 +180,9 @@ TEST_F(MovingTest, AMomentLooksLikeTheSameSceneStandingStill) {
             shape.material = geometry.materials[object.first];
             still.meshes[0].primitives.push_back(std::move(shape));
         }
-        Renderer other(device(), still, assemble(still, motion_of(still, "")), sky);
-        settings.bounds = bounds(scene);
+        const Moment rest = at_rest(still);
+        Renderer other(device(), still, rest, assemble(still, rest, motion_of(still, "")), sky);
+        settings.bounds = bounds(scene, moment);
         Tally result = tally(moved, other.render(settings), 2e-3);
         result.expect(0.01, 96 * 96);  // at edges rounding decides
     }
@@ -211,11 +212,12 @@ TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
         reference.ldc = 64;
         Scene still = scene;
         still.animations.clear();
-        reference.bounds = settings.bounds = bounds(scene);
-        Renderer other(device(), still, assemble(still, motion_of(still, "")), sky);
+        const Moment moment = moment_of(scene, "0", 1.2);
+        reference.bounds = settings.bounds = bounds(scene, moment);
+        Renderer other(device(), still, moment, assemble(still, moment, motion_of(still, "")), sky);
         tally(moved, other.render(reference), 5e-3).expect(hit == HitTest::exact ? 0.002 : 0.05, 96 * 96);
         for (Material& material : still.materials) material.alpha_cutoff = 0;
-        Renderer opaque(device(), still, assemble(still, motion_of(still, "")), sky);
+        Renderer opaque(device(), still, moment, assemble(still, moment, motion_of(still, "")), sky);
         EXPECT_GT(tally(moved, opaque.render(reference), 5e-3).wrong, 500u) << "the holes are seen";
     }
 }
@@ -321,8 +323,7 @@ TEST_F(MovingTest, TheBaselinesMoveToo) {
 TEST_F(MovingTest, WaterTooFarFromItsBeginningIsRefused) {
     Scene scene = load_scene("builtin:waves:200");
     const auto renderer = renderer_in(scene, "0", 0, sky);
-    animate(scene, "0", 4000);
-    expect_error([&] { renderer->pose(scene); }, {"3600", "4000"});
+    expect_error([&] { renderer->pose(moment_of(scene, "0", 4000)); }, {"3600", "4000"});
 }
 
 }  // namespace

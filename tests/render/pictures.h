@@ -24,8 +24,9 @@ class PictureTest : public DeviceTest {
     }
     /// For several pictures of a scene that stands still; the stage must outlive it.
     std::unique_ptr<Renderer> renderer_for(const Stage& stage, const Environment& environment) {
-        return std::make_unique<Renderer>(device(), stage.scene, assemble(stage.scene, motion_of(stage.scene, "")),
-                                          environment);
+        const Moment rest = at_rest(stage.scene);
+        return std::make_unique<Renderer>(device(), stage.scene, rest,
+                                          assemble(stage.scene, rest, motion_of(stage.scene, "")), environment);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };

@@ -1,0 +1,30 @@
+// What is generated (Scene::generated) on the CPU: the twin of the passes of src/render/generators.
+#pragma once
+
+#include "scene/moment.h"
+
+namespace peelray {
+
+/// Simulates one scene from moment to moment. Water goes on from the moment before, or starts again where that was
+/// later: what comes out depends on nothing but the moment.
+class Simulation {
+  public:
+    /// Puts what is generated where it is at Moment::generated_time: vertices of water, places of nodes. `scene`: the
+    /// same in every call.
+    void place(const Scene& scene, Moment& moment);
+
+    /// Heights and velocities of a Water over its grid.
+    struct Heights {
+        uint64_t step = 0;
+        std::vector<double> heights, velocities;  ///< empty: nothing has been simulated yet
+    };
+    const std::vector<Heights>& waters() const { return waters_; }
+
+  private:
+    std::vector<Heights> waters_;
+};
+
+/// Makes the beginning of what is generated the scene's state at rest.
+void settle(Scene& scene);
+
+}  // namespace peelray
