@@ -33,6 +33,13 @@ struct Options {
     std::string device, out;
 };
 
+TracerChoice choice_of(uint32_t ldc, HitTest test) {
+    TracerChoice choice;
+    choice.cubes.ldc = ldc;
+    choice.cubes.hit = test;
+    return choice;
+}
+
 /// An answer and how far it is off: across the surface, as a share of the diagonal; infinite: hit against miss.
 struct Case {
     double off = -1;
@@ -71,7 +78,7 @@ class Bench {
           test_(test),
           commands_(device),
           scene_(device, scene, at_rest(scene), assemble(scene, at_rest(scene), motion_of(scene, "")),
-                 {ldc, test, false}) {
+                 choice_of(ldc, test)) {
         for (const LdcBody& body : scene_.download_bodies(commands_)) voxel_ = std::max(voxel_, body.grid.voxel);
     }
 

@@ -73,9 +73,9 @@ Json measure(Device& device, const std::string& name, const Options& options) {
         fmt::print("{} ({} triangles), {}: Embree {:.1f} Mrays/s by {} (build {:.1f} ms)", name,
                    geometry.triangles.size(), test::name_of(kind), embree_rate, embree.way(), embree_build.median);
         for (const Traversal traversal : {Traversal::voxel, Traversal::two_level, Traversal::mipmap}) {
-            CubeChoice choice;
-            choice.ldc = options.ldc;
-            choice.layout.traversal = traversal;
+            TracerChoice choice;
+            choice.cubes.ldc = options.ldc;
+            choice.cubes.layout.traversal = traversal;
             const Moment rest = at_rest(scene);
             RayScene cubes(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), choice);
             size_t found = 0;

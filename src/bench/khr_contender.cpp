@@ -5,9 +5,12 @@ namespace {
 
 std::unique_ptr<RayScene> make_scene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
                                      StructureUpdate update) {
-    CubeChoice choice;
-    choice.hit = HitTest::planar;  // of cubes that are never built
-    return std::make_unique<RayScene>(device, scene, moment, assembly, choice, update);
+    TracerChoice choice;
+    choice.tracer = Tracer::khr;
+    choice.cubes.hit = HitTest::planar;  // of cubes that are never built
+    choice.rebuild = true;
+    choice.structures = update;
+    return std::make_unique<RayScene>(device, scene, moment, assembly, choice);
 }
 
 }  // namespace

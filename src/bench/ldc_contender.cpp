@@ -7,7 +7,9 @@
 namespace peelray {
 namespace {
 
-CubeChoice rebuilt(CubeChoice choice) {
+TracerChoice rebuilt(const CubeChoice& cubes) {
+    TracerChoice choice;
+    choice.cubes = cubes;
     choice.rebuild = true;
     return choice;
 }

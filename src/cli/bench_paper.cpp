@@ -197,7 +197,7 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     tracing.check();
     RenderSettings settings = settings_of(arguments_);
     settings.repeat = repeat_;
-    settings.ldc_each = true;
+    settings.cubes.ldc_each = true;
     if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
     rendered_ = true;
     summarise(render(settings, progress), row);

@@ -71,7 +71,7 @@ MadePicture PictureMaker::make(const std::string& tracer, RenderSettings setting
 /// since what one needed must not count as another's memory.
 Renderer& PictureMaker::renderer_for(const RenderSettings& settings) {
     if (settings.tracer == Tracer::cubemap) scene_.simulate();
-    const Kind kind{settings.tracer, settings.hit_auto, settings.hit};
+    const Kind kind{settings.tracer, settings.hit_auto, settings.cubes.hit};
     if (!renderer_ || !(kind == kind_)) {
         renderer_.reset();
         device().reset_peak();

@@ -148,12 +148,12 @@ void check_ranges(const PictureArguments& a) {
 
 void choose_hit(RenderSettings& settings, const std::string& hit) {
     settings.hit_auto = hit == "auto";
-    settings.hit = named(hit, {HitTest::exact, HitTest::planar, HitTest::tolerance});
+    settings.cubes.hit = named(hit, {HitTest::exact, HitTest::planar, HitTest::tolerance});
 }
 
 void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
-    CubeLayout& layout = settings.layout;
-    settings.tolerance = float(tracing.tolerance);
+    CubeLayout& layout = settings.cubes.layout;
+    settings.cubes.tolerance = float(tracing.tolerance);
     layout.traversal = named(tracing.traversal, {Traversal::voxel, Traversal::two_level, Traversal::mipmap});
     layout.block = tracing.block;
     layout.batch = named(tracing.batch, {Batch::none, Batch::layers, Batch::rays});
@@ -169,7 +169,7 @@ RenderSettings settings_of(const PictureArguments& a) {
     RenderSettings settings;
     settings.width = a.size.x;
     settings.height = a.size.y;
-    settings.ldc = a.tracing.ldc.value_or(0);
+    settings.cubes.ldc = a.tracing.ldc.value_or(0);
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;

@@ -117,22 +117,23 @@ void run_trace(const TraceArguments& a) {
     check_visible(geometry, scene);
 
     RenderSettings settings;
-    settings.ldc = a.tracing.ldc.value_or(0);
+    settings.cubes.ldc = a.tracing.ldc.value_or(0);
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
+    settings.tracer = a.tracing.tracer == "khr" ? Tracer::khr : Tracer::ldc;
+    settings.structures = StructureUpdate::keep;
 
     Device device({a.device.device, a.device.validate});
-    const CubeChoice choice = choose_automatically(device, uint32_t(geometry.triangles.size()), settings);
+    settings.cubes = choose_automatically(device, uint32_t(geometry.triangles.size()), settings);
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");
-        const auto khr = a.tracing.tracer == "khr" ? std::optional(StructureUpdate::keep) : std::nullopt;
-        return RayScene(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), choice, khr);
+        return RayScene(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), settings);
     }();
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();
     Commands commands(device);
     if (!traced_scene.structures()) {
-        const std::string note = tolerance_note(traced_scene.download_bodies(commands), choice);
+        const std::string note = tolerance_note(traced_scene.download_bodies(commands), settings.cubes);
         if (!note.empty()) print_note(note);
     }
     write_hits(a.hits, traced.hits);
@@ -144,7 +145,7 @@ void run_trace(const TraceArguments& a) {
     if (traced_scene.structures())
         fmt::print(", {} acceleration structures", traced_scene.structures()->stats().bodies);
     else
-        fmt::print(" ({}), {}", name_of(choice.hit), count_of_cubes(traced_scene.cubes().stats()));
+        fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_scene.cubes().stats()));
     if (device.timestamp_period() > 0)
         fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", traced_scene.structures() ? "structures" : "cubes",
                    traced_scene.build_ms(), traced.trace_ms);

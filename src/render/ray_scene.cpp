@@ -9,12 +9,12 @@
 namespace peelray {
 
 RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
-                   const CubeChoice& choice, std::optional<StructureUpdate> khr)
+                   const TracerChoice& choice)
     : device_(device),
       triangles_(device, assembly.positions, assembly.triangles),
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
       instances_(device, instance_infos(assembly)),
-      cubes_(device, assembly, choice, smallest_scales(assembly, moment.worlds)),
+      cubes_(device, assembly, choice.cubes, choice.fixed_bodies(assembly), smallest_scales(assembly, moment.worlds)),
       shown_(assembly.bodies.size()) {
     Commands commands(device);
     if (has_masks(scene, assembly.materials)) {
@@ -24,16 +24,16 @@ RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, con
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
     instances_.place(commands, transforms_of(assembly.instances, moment.worlds));
     for (const Assembly::Instance& instance : assembly.instances) shown_[instance.body]++;
-    if (khr)
-        build_structures(commands, scene, assembly, *khr);
+    if (choice.tracer == Tracer::khr)
+        build_structures(commands, scene, assembly, choice);
     else
         build_cubes(commands);
 }
 
 void RayScene::build_structures(Commands& commands, const Scene& scene, const Assembly& assembly,
-                                StructureUpdate update) {
+                                const TracerChoice& choice) {
     std::vector<StructureBody> bodies = structure_bodies(scene, assembly);
-    for (StructureBody& body : bodies) body.update = update;
+    for (size_t i = choice.fixed_bodies(assembly); i < bodies.size(); i++) bodies[i].update = choice.structures;
     structures_ = std::make_unique<Structures>(device_, triangles_, instances_, bodies);
     const auto count = [&] {
         build_times_.insert(build_times_.end(), commands.times().begin(), commands.times().end());

@@ -2,18 +2,17 @@
 // with but what tells of holes.
 #pragma once
 
-#include "khr/structures.h"
 #include "ldc/tracer.h"
-#include "render/scene_cubes.h"
+#include "render/tracer_choice.h"
 
 namespace peelray {
 
 class RayScene {
   public:
-    /// Uploads the scene at a moment, which is that of its assembly, and builds its cubes; with `khr` the device's own
-    /// acceleration structures instead. Throws Error where it has none.
+    /// Uploads the scene at a moment, which is that of its assembly, and builds what rays are traced in: Tracer::ldc or
+    /// khr. Throws Error where the device has no acceleration structures.
     RayScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
-             const CubeChoice& choice, std::optional<StructureUpdate> khr = {});
+             const TracerChoice& choice);
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
@@ -42,7 +41,7 @@ class RayScene {
 
   private:
     void build_cubes(Commands& commands);
-    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly, StructureUpdate update);
+    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly, const TracerChoice& choice);
 
     Device& device_;
     TriangleBuffers triangles_;

@@ -34,8 +34,7 @@ void describe_view(Frame& frame, const View& view) {
 }  // namespace
 
 CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings) {
-    CubeChoice choice{settings.ldc,      settings.hit,       settings.rebuild,
-                      settings.ldc_each, settings.tolerance, settings.layout};
+    CubeChoice choice = settings.cubes;
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
     const uint64_t most = choice.layout.by_pixel() ? ~0ull : most_exact_triangles(device);
     if (settings.hit_auto)
@@ -165,10 +164,11 @@ void Renderer::Impl::prepare_cubes() {
     // Whoever traces nothing is not told what a cube cannot hold.
     if (settings.tracer != Tracer::ldc && choice.hit == HitTest::tolerance) choice.hit = HitTest::planar;
     hit = choice.hit;
-    if (cubes && cubes->choice() == choice) return;
+    const uint32_t fixed = settings.fixed_bodies(assembly);
+    if (cubes && cubes->choice() == choice && cubes->fixed() == fixed) return;
     build_fits = false;
     cubes.reset();  // first, so that both never live at once
-    cubes = std::make_unique<SceneCubes>(device, assembly, choice, smallest_scales(assembly, moment.worlds));
+    cubes = std::make_unique<SceneCubes>(device, assembly, choice, fixed, smallest_scales(assembly, moment.worlds));
 }
 
 void Renderer::Impl::prepare_maps() {
@@ -187,8 +187,8 @@ void Renderer::Impl::prepare_structures() {
     if (settings.tracer != Tracer::khr) return;
     bool same = structures != nullptr;
     for (size_t i = 0; i < bodies.size(); i++) {
-        const bool kept = !settings.rebuild && i < assembly.fixed;
-        const StructureUpdate update = kept ? StructureUpdate::keep : settings.structures;
+        const StructureUpdate update =
+            i < settings.fixed_bodies(assembly) ? StructureUpdate::keep : settings.structures;
         same &= bodies[i].update == update;
         bodies[i].update = update;
     }
@@ -228,8 +228,8 @@ void Renderer::Impl::prepare_frame() {
     // way, which is at most 0.58 voxels along its normal.
     const bool traces = settings.tracer == Tracer::ldc;
     frame.surface_offset = !traces ? 0 : hit == HitTest::planar ? 0.7f : hit == HitTest::tolerance ? 0.6f : 0;
-    frame.tolerance = traces && hit == HitTest::tolerance ? settings.tolerance : 0;
-    frame.block = settings.layout.block;
+    frame.tolerance = traces && hit == HitTest::tolerance ? settings.cubes.tolerance : 0;
+    frame.block = settings.cubes.layout.block;
     frame.spp = cubemap ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.last_level = last_level;
     commands.upload(view.frame, std::span<const Frame>(&frame, 1));
@@ -354,7 +354,7 @@ void Renderer::Impl::record_trace_of(uint32_t level) {
         return record_khr_trace(commands, device, *structures, scene.triangles, queue, hits, false);
     const CountBuffers counting = counter ? counter->level(level) : CountBuffers{hits, hits};
     if (counter) queue.counting = &counting;
-    record_trace(commands, device, traced(), queue, hits, {hit, settings.tolerance, false, Edges::single});
+    record_trace(commands, device, traced(), queue, hits, {hit, settings.cubes.tolerance, false, Edges::single});
 }
 
 /// The same as record_shadows() for the device's own ray tracing.
@@ -386,7 +386,7 @@ void Renderer::Impl::record_shadows() {
     p.tree = scene.instances.tree();
     p.count = queue.capacity;
     p.tolerance = frame.tolerance;
-    p.block = settings.layout.block;
+    p.block = settings.cubes.layout.block;
     const CountBuffers counting = counter ? counter->lights() : CountBuffers{queue.light, queue.light};
     std::vector<Binding> bindings = cube_bindings(traced(), {{"shadow_rays", queue.rays},
                                                              {"shadow_skip", queue.skip},
@@ -401,7 +401,7 @@ void Renderer::Impl::record_shadows() {
         bindings = with_alpha_test(bindings, scene.triangles);
     }
     const Pass& pass = device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
-                                       (settings.layout.by_pixel() ? "_pixels" : ""),
+                                       (settings.cubes.layout.by_pixel() ? "_pixels" : ""),
                                    traversal_constants(device, traced(), hit, counter != nullptr));
     commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(),
                           PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));

@@ -6,22 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "khr/structures.h"
 #include "render/cost_counter.h"
 #include "render/cube_maps.h"
-#include "render/scene_cubes.h"
+#include "render/tracer_choice.h"
 #include "scene/moment.h"
 #include "scene/picture.h"
 
 namespace peelray {
-
-/// Who answers for what a surface mirrors, lets through and has in its way to the light.
-enum class Tracer : uint8_t {
-    ldc,      ///< rays in the layered depth cube
-    khr,      ///< the rival: rays by the device's own ray tracing
-    cubemap,  ///< the baseline: cube maps of each object's surroundings and shadow maps
-    none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
-};
 
 /// Who finds what each pixel sees.
 enum class Visibility : uint8_t {
@@ -31,19 +22,9 @@ enum class Visibility : uint8_t {
 };
 
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
-struct RenderSettings : PictureSettings {
-    uint32_t ldc = 0;       ///< voxels along the largest cube's longest side, 16 to 2048; 0: chosen by the triangles
-    bool ldc_each = false;  ///< for measuring: `ldc` voxels for every body, not only for the largest
-    bool rebuild = false;   ///< for measuring: all cubes or structures anew in every frame, as if everything changed
-    bool hit_auto = true;   ///< choose the hit test by the number of triangles
-    HitTest hit = HitTest::exact;
-    float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
-    CubeLayout layout;         ///< builder, traversal and what belongs to them
-    Tracer tracer = Tracer::ldc;
+struct RenderSettings : PictureSettings, TracerChoice {
+    bool hit_auto = true;  ///< choose cubes.hit by the number of triangles
     Visibility visibility = Visibility::automatic;
-    /// Of `khr`: what becomes of the structure of a body that changes its shape, or, with `rebuild`, of every one.
-    /// `keep` leaves all as they were first: for measuring the rays alone.
-    StructureUpdate structures = StructureUpdate::rebuild;
     uint32_t repeat = 1;      ///< frames to render; times are medians over them
     bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
     bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc

@@ -30,9 +30,9 @@ uint32_t in_sixteens(float voxels) {
     return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
 }
 
-std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice,
+std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed,
                                   const std::vector<float>& scales) {
-    const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice);
+    const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice, fixed);
     std::vector<CubeBody> bodies;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
@@ -74,7 +74,7 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
 
 }  // namespace
 
-std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice) {
+std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed) {
     float largest = 1e-30f;
     for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
     const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
@@ -90,19 +90,18 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
         if (choice.hit == HitTest::exact)
             resolution = std::min(resolution, in_sixteens(16 * std::sqrt(float(body.triangles))));
         if (by_triangles)
-            resolution = serving_resolution(body.triangles, longest_side(body), body.inverse_edges,
-                                            choice.rebuild || i >= assembly.fixed);
+            resolution = serving_resolution(body.triangles, longest_side(body), body.inverse_edges, i >= fixed);
         resolutions.push_back(resolution);
     }
     return resolutions;
 }
 
-SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice,
+SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice, uint32_t fixed,
                        const std::vector<float>& scales)
     : device_(device),
       choice_(choice),
-      fixed_(choice.rebuild ? 0 : assembly.fixed),
-      cubes_(device, cube_bodies(assembly, choice, scales), sampling_for(choice.hit), choice.layout) {}
+      fixed_(fixed),
+      cubes_(device, cube_bodies(assembly, choice, fixed, scales), sampling_for(choice.hit), choice.layout) {}
 
 bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangles) {
     if (fixed_built_) return false;

@@ -14,7 +14,6 @@ namespace peelray {
 struct CubeChoice {
     uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
     HitTest hit = HitTest::exact;
-    bool rebuild = false;      ///< every cube anew for every frame, as if everything deformed
     bool ldc_each = false;     ///< `ldc` voxels for every body, not only for the largest
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
     CubeLayout layout;
@@ -23,17 +22,21 @@ struct CubeChoice {
 
 /// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but
 /// at least a quarter of it.
-std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice);
+/// `fixed`: of the first so many bodies they are built once, of the others for every frame.
+std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed);
 
 class SceneCubes {
   public:
     /// Makes room for the cubes; nothing is built yet.
+    /// `fixed`: the cubes of the first so many bodies are built once, the others for every frame.
     /// `scales`: of each body the smallest scale at which an instance shows it. Throws Error where the choice is
     /// impossible.
-    SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice, const std::vector<float>& scales);
+    SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice, uint32_t fixed,
+               const std::vector<float>& scales);
 
     const Cubes& cubes() const { return cubes_; }
     const CubeChoice& choice() const { return choice_; }
+    uint32_t fixed() const { return fixed_; }  ///< cubes that are built once
 
     /// Builds what is built once, if that has not been done; true if it did. Submits, until everything fits.
     bool build_fixed(Commands& commands, const TriangleBuffers& triangles);

@@ -62,7 +62,7 @@ TEST_F(MirrorTest, ShowsTheMirroredScene) {
     Stage stage = world(false);
     stage.add(kMirror, plane_mirror());
     RenderSettings settings = settings_for(kCamera, 128);
-    settings.ldc = 128;
+    settings.cubes.ldc = 128;
     const RenderResult in_mirror = render(stage, marked_environment(false), settings);
     const RenderResult direct = render(world(true), marked_environment(true), settings);
     // Only silhouettes may differ: there a rounding decides what a pixel sees.

@@ -107,7 +107,7 @@ TEST_F(ShadowTest, TouchesTheBoxThatCastsIt) {
     };
     for (uint32_t ldc : {32u, 200u}) {
         RenderSettings settings = settings_for(camera, 160);
-        settings.ldc = ldc;
+        settings.cubes.ldc = ldc;
         const RenderResult picture = render(stage, black, settings);
         tally_outline(
             picture, camera,
@@ -138,7 +138,7 @@ TEST_F(ShadowTest, NoAcneOnAFinePlaneInGrazingLight) {
     for (uint32_t ldc : {48u, 256u}) {
         RenderSettings settings =
             settings_for(orthographic(turn * glm::vec3(0, 4, 0), {0, 0, 0}, 5.5f, turn * glm::vec3(0, 0, -1)), 96);
-        settings.ldc = ldc;
+        settings.cubes.ldc = ldc;
         const double want = 100 * std::sin(1.5 * kPi / 180) / kPi;
         tally(render(stage, black, settings), settings.camera, 0.01 * want, [&](const ViewRay&) {
             return glm::dvec3(want);
@@ -156,7 +156,7 @@ TEST_F(ShadowTest, NoAcneOnASphere) {
         stage.sun(glm::vec3(travel), {3, 3, 3});
         RenderSettings settings = settings_for(perspective({1, 1.5f, 3}, {0, 0, 0}, 45), 128);
         settings.aovs = true;
-        settings.ldc = 128;
+        settings.cubes.ldc = 128;
         const RenderResult picture = render(stage, black, settings);
         Tally bright, dark;
         for (size_t i = 0; i < picture.radiance.size(); i++) {

@@ -31,7 +31,10 @@ TEST_P(KhrOnScene, HitsAreThoseOfTheCubesAndTheOracle) {
     const Oracle oracle(geometry, alpha);
     const Moment rest = at_rest(scene);
     const Assembly assembly = assemble(scene, rest, motion_of(scene, ""));
-    RayScene khr(device(), scene, rest, assembly, {}, StructureUpdate::keep), ldc(device(), scene, rest, assembly, {});
+    TracerChoice structures;
+    structures.tracer = Tracer::khr;
+    structures.structures = StructureUpdate::keep;
+    RayScene khr(device(), scene, rest, assembly, structures), ldc(device(), scene, rest, assembly, {});
     EXPECT_EQ(khr.structures()->stats().bodies, assembly.bodies.size());
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel}) {
         test::RaySource source(geometry, 77);

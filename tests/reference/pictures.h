@@ -11,7 +11,9 @@ enum class Tracer : uint8_t { ldc, none };
 
 /// The settings that the GPU's tests know; the reference has no cube to choose a resolution for.
 struct RenderSettings : PictureSettings {
-    uint32_t ldc = 0;
+    struct {
+        uint32_t ldc = 0;
+    } cubes;
     Tracer tracer = Tracer::ldc;  ///< none: no effect is traced
 };
 using RenderResult = Picture;

@@ -35,7 +35,7 @@ TEST_F(Counters, EveryRayCountsOnceAndOfEachPixelAll) {
     for (const Traversal traversal : {Traversal::voxel, Traversal::two_level}) {
         SCOPED_TRACE(name_of(traversal));
         RenderSettings s = settings();
-        s.layout.traversal = traversal;
+        s.cubes.layout.traversal = traversal;
         s.spp = 2;
         const RenderResult picture = render(stage, white, s);
         ASSERT_TRUE(picture.stats.counted);

@@ -27,7 +27,7 @@ struct MovedScene {
           moment(moment_of(source, animation, 0)),
           assembly(assemble(source, moment, motion_of(source, animation))),
           gpu(device, source, moment, assembly, color_environment(glm::vec3(1))),
-          cubes(device, assembly, choice, std::vector<float>(assembly.bodies.size(), 1.0f)),
+          cubes(device, assembly, choice, assembly.fixed, std::vector<float>(assembly.bodies.size(), 1.0f)),
           commands(device) {}
 
     /// Vertices, bounds and instances of the moment.

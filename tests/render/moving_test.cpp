@@ -29,9 +29,9 @@ class MovingTest : public PictureTest {
     }
     static RenderSettings small(const Camera& camera, HitTest hit = HitTest::exact) {
         RenderSettings settings = settings_for(camera, 48);
-        settings.ldc = 0;
-        settings.hit = hit;
-        if (hit == HitTest::planar) settings.ldc = 128;
+        settings.cubes.ldc = 0;
+        settings.cubes.hit = hit;
+        if (hit == HitTest::planar) settings.cubes.ldc = 128;
         return settings;
     }
     static void expect_identical(const RenderResult& a, const RenderResult& b) {
@@ -144,7 +144,7 @@ TEST_F(MovingTest, RebuildingEverythingChangesNoPicture) {
     for (const char* name : {"", "builtin:waves:800"}) {
         Scene scene = *name ? load_scene(name) : three_balls();
         RenderSettings settings = small(scene.cameras.empty() ? kUsualView : scene.cameras[0]);
-        settings.ldc = 64;  // automatic resolutions are others where everything is rebuilt
+        settings.cubes.ldc = 64;  // automatic resolutions are others where everything is rebuilt
         const auto renderer = renderer_in(scene, "0", 0.7, sky);
         const RenderResult kept = renderer->render(settings);
         settings.rebuild = true;
@@ -205,11 +205,11 @@ TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
         const auto renderer = renderer_in(scene, "0", 0, sky);
         RenderSettings settings = small(kUsualView, hit);
         settings.width = settings.height = 96;
-        if (hit == HitTest::planar) settings.ldc = 256;
+        if (hit == HitTest::planar) settings.cubes.ldc = 256;
         const RenderResult moved = at(*renderer, scene, "0", 1.2, settings);
         RenderSettings reference = settings;
-        reference.hit = HitTest::exact;
-        reference.ldc = 64;
+        reference.cubes.hit = HitTest::exact;
+        reference.cubes.ldc = 64;
         Scene still = scene;
         still.animations.clear();
         const Moment moment = moment_of(scene, "0", 1.2);
@@ -258,7 +258,7 @@ TEST_F(MovingTest, HundredsOfFramesLoseNothingAndKeepNoMemory) {
         {"", 2, {{0, Path::weights, AnimationChannel::Interpolation::linear, 1, {0, 1, 2}, {0, 1, 0}}}});
     RenderSettings settings = small(perspective({0, 0.5f, 6}, {0, 0, 0}, 40));
     settings.width = settings.height = 16;
-    settings.ldc = 128;
+    settings.cubes.ldc = 128;
     settings.bounces = 1;
     settings.bounds = Box{vec3(-2), vec3(2)};
     const auto renderer = renderer_in(scene, "0", 0, sky);

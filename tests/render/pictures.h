@@ -12,7 +12,7 @@ inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
     RenderSettings s;
     s.width = s.height = size;
     s.camera = camera;
-    s.ldc = 64;
+    s.cubes.ldc = 64;
     s.hit_auto = false;
     return s;
 }

@@ -8,8 +8,8 @@ class PlanarTest : public PictureTest {
   protected:
     RenderSettings with(const Camera& camera, HitTest hit) {
         RenderSettings settings = settings_for(camera, 128);
-        settings.hit = hit;
-        settings.ldc = hit == HitTest::planar ? 512 : 64;
+        settings.cubes.hit = hit;
+        settings.cubes.ldc = hit == HitTest::planar ? 512 : 64;
         return settings;
     }
 };
@@ -38,7 +38,7 @@ TEST_F(PlanarTest, NoAcneOnACurvedMirror) {
     Stage tinted;
     tinted.add(sphere({0, 0, 0}, 1, 32), plane_mirror(glm::vec3(0.5f)));
     RenderSettings settings = with(camera, HitTest::planar);
-    settings.ldc = 256;
+    settings.cubes.ldc = 256;
     settings.aovs = true;
     const RenderResult picture = render(tinted, white, settings);
     Tally result;
@@ -87,7 +87,7 @@ TEST_F(PlanarTest, ColouredGlassTintsItsShadow) {
     stage.sun({0, -1, 0}, glm::vec3(kPi));
     RenderSettings settings = with(orthographic({0, 0.9f, 0}, {0, 0, 0}, 3.5f, {0, 0, -1}), HitTest::planar);
     settings.width = settings.height = 32;
-    settings.ldc = 128;
+    settings.cubes.ldc = 128;
     tally(render(stage, black, settings), settings.camera, 0.02, [](const ViewRay& ray) {
         return glm::dvec3((ray.origin.x + 2) / 4, (ray.origin.z + 2) / 4, 1) * (1 - 0.08 / 1.04);
     }).expect(0, 1024);

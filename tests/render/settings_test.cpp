@@ -81,8 +81,8 @@ TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {
     refuses([](auto& s) { s.width = 1u << 20; }, {"--size"});
     refuses([](auto& s) { s.bounces = 17; }, {"17", "16", "--bounces"});
     refuses([](auto& s) { s.spp = 0; }, {"--spp"});
-    refuses([](auto& s) { s.ldc = 8; }, {"8", "--ldc"});
-    refuses([](auto& s) { s.ldc = 4096; }, {"4096", "--ldc"});
+    refuses([](auto& s) { s.cubes.ldc = 8; }, {"8", "--ldc"});
+    refuses([](auto& s) { s.cubes.ldc = 4096; }, {"4096", "--ldc"});
     refuses([](auto& s) { s.camera.look = s.camera.eye; }, {"--eye", "--look"});
     refuses([](auto& s) { s.camera.up = {0, -3, 0}; }, {"--up"});
     refuses([](auto& s) { s.camera.up = {0, 0, 0}; }, {"--up"});
@@ -112,7 +112,7 @@ TEST_F(SettingsTest, AutoChoosesByTriangles) {
         EXPECT_EQ(choose_automatically(device(), uint32_t(most), settings).hit, HitTest::exact);
         EXPECT_EQ(choose_automatically(device(), uint32_t(most) + 1, settings).hit, HitTest::planar);
     }
-    settings.ldc = 77;
+    settings.cubes.ldc = 77;
     EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).ldc, 77u);
     settings.hit_auto = false;
     EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).hit, HitTest::exact);

@@ -1,0 +1,29 @@
+// Who traces a scene's rays, and what in.
+#pragma once
+
+#include "khr/structures.h"
+#include "render/scene_cubes.h"
+
+namespace peelray {
+
+/// Who answers for what a surface mirrors, lets through and has in its way to the light.
+enum class Tracer : uint8_t {
+    ldc,      ///< rays in the layered depth cube
+    khr,      ///< the rival: rays by the device's own ray tracing
+    cubemap,  ///< the baseline: cube maps of each object's surroundings and shadow maps
+    none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
+};
+
+struct TracerChoice {
+    Tracer tracer = Tracer::ldc;
+    CubeChoice cubes;
+    bool rebuild = false;  ///< for measuring: all cubes or structures anew in every frame, as if everything changed
+    /// Of `khr`: what becomes of the structure of a body that changes its shape, or, with `rebuild`, of every one.
+    /// `keep` leaves all as they were first: for measuring the rays alone.
+    StructureUpdate structures = StructureUpdate::rebuild;
+
+    /// How many of the first bodies are built once.
+    uint32_t fixed_bodies(const Assembly& assembly) const { return rebuild ? 0 : assembly.fixed; }
+};
+
+}  // namespace peelray
