@@ -13,10 +13,10 @@
 namespace peelray {
 namespace {
 
-/// A mesh that several nodes show is worth a cube of its own from here on; smaller ones are copied.
+/// From this many triangles on, a mesh that several nodes show is worth a cube of its own; smaller ones are copied.
 constexpr uint64_t kSharedMesh = 500, kSharedTriangles = 20'000;
-/// Rays are taken into an instance's space in single precision: of a transform that squeezes a cube to less than this
-/// share of the cube of its longest edge, too little would be left.
+/// Rays are transformed into an instance's space in single precision: a transform that squeezes a cube to less than
+/// this share of the cube of its longest edge would leave too little precision.
 constexpr double kLeastVolume = 1e-3;
 
 /// A primitive of a node.
@@ -25,7 +25,7 @@ struct Place {
     uint32_t primitive;
 };
 
-/// Can rays be taken through the transform and back?
+/// Can rays be transformed there and back?
 bool is_invertible(const glm::mat4& m) {
     const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
     const double longest = std::max({glm::length(x), glm::length(y), glm::length(z)});
@@ -133,7 +133,7 @@ class Assembler {
             return std::any_of(joints.begin(), joints.end(), moves) ||
                    (moves(place.node) && has_free_vertex(primitive));
         }
-        // A scale that changes is no rigid motion, and may leave nothing to take rays into.
+        // A changing scale is not a rigid motion, and it may leave no space to transform rays into.
         const Still& still = still_[size_t(place.node)];
         return still.anchor >= 0 &&
                (still.scaled || !is_invertible(worlds_[size_t(still.anchor)]) || !is_invertible(still.offset));

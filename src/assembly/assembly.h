@@ -1,4 +1,4 @@
-// The scene as ray tracing takes it: bodies, which have a cube each, and instances, which place them in the world.
+// The scene as ray tracing sees it: bodies, which have a cube each, and instances, which place them in the world.
 #pragma once
 
 #include "motion/motion.h"
@@ -24,7 +24,7 @@ struct Assembly {
         uint32_t first_object = 0;  ///< added to the objects of its triangles: their Geometry::Object
     };
 
-    /// A primitive of a node in a body that deforms. Its vertices are computed anew for every moment, in world space.
+    /// A primitive of a node in a body that deforms. Its vertices are computed for every moment, in world space.
     struct Piece {
         int node = 0;
         uint32_t primitive = 0;  ///< of the node's mesh
@@ -51,8 +51,8 @@ double mean_edge(uint64_t triangles, double area);
 
 /// Voxels along the longest side of a cube that serves a body well: 16 to 1024, a multiple of 16. By the number of its
 /// triangles, where they are spread over all of it; where they crowd in parts of it, as many as if all of it were
-/// divided so finely (sixteen times as many at most). `inverse_edges`: in the units of `longest`, its longest side.
-/// Exact hits do not depend on it: it is chosen for speed. One that is built for every frame is the coarser for it.
+/// divided as finely (sixteen times as many at most). `inverse_edges`: in the units of `longest`, its longest side.
+/// Exact hits do not depend on it: it is chosen for speed. A cube that is built for every frame gets coarser voxels.
 uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_edges, bool rebuilt = false);
 
 /// Takes the scene at a moment apart so that as little as possible has to be rebuilt for every moment of `motion` (the

@@ -12,7 +12,7 @@ namespace {
 /// Costs relative to each other: of a ray's start in a cube whose box it meets, of a look at one sample in the lists
 /// that it meets near a surface, and of finding out which of two boxes it meets.
 constexpr double kStart = 4, kSample = 2, kBoxes = 1;
-/// The same of testing the few triangles of a bare body (CubeBody::bare).
+/// The same for testing the few triangles of a bare body (CubeBody::bare).
 constexpr double kBare = 1;
 /// Share of the cost that a split must save.
 constexpr double kGain = 0.1;
@@ -30,7 +30,7 @@ double half_area(const glm::vec3& lower, const glm::vec3& upper) {
 /// What some parts have together.
 class Extent {
   public:
-    /// `weight`: the share of all rays that are after this part.
+    /// `weight`: the share of all rays that look for hits on this part.
     void add(const Part& part, double weight) {
         lower_ = glm::min(lower_, part.lower);
         upper_ = glm::max(upper_, part.upper);
@@ -42,8 +42,8 @@ class Extent {
         by_edge2_ += weight / (edge * edge);
     }
 
-    /// Of all rays that are after its parts, in one cube. Near a part's surface a ray meets voxels with the triangles
-    /// that touch them: (1 + h / e)² of edge length e at a voxel's edge h.
+    /// Of all rays that look for hits on its parts, in one cube. Near a part's surface a ray meets voxels with the
+    /// triangles that touch them: (1 + h / e)² of edge length e at a voxel's edge h.
     double cost() const {
         if (is_bare()) return kBare * weight_;
         const glm::vec3 size = upper_ - lower_;
@@ -64,8 +64,8 @@ class Extent {
     double inverse_edges_ = 0, weight_ = 0, by_edge_ = 0, by_edge2_ = 0;
 };
 
-/// Of all rays that are after two sets of parts, beside what each set's rays cost in its own cubes: they find out which
-/// boxes they meet, and start in the other's cube as well if they meet its box.
+/// Of all rays that look for hits on two sets of parts, beside what each set's rays cost in its own cubes: they find
+/// out which boxes they meet, and start in the other's cube as well if they meet its box.
 double cost_of_both(const Extent& all, const Extent& a, const Extent& b) {
     const double area = std::max(all.area(), 1e-60);
     return kBoxes * all.weight() + (a.weight() * b.start() * b.area() + b.weight() * a.start() * a.area()) / area;
@@ -73,7 +73,7 @@ double cost_of_both(const Extent& all, const Extent& a, const Extent& b) {
 
 class Grouping {
   public:
-    /// Half of the rays go to parts by their size, half by their triangles: what is modelled is looked at.
+    /// Half of the rays go to parts by their size, half by their triangles: what is modelled finely gets looked at.
     explicit Grouping(const std::vector<Part>& parts) : parts_(parts) {
         double area = 1e-60, triangles = 1e-60;
         for (const Part& part : parts) {
@@ -90,7 +90,7 @@ class Grouping {
         std::vector<std::vector<uint32_t>> groups;
     };
 
-    /// The largest of the parts that can be bare, if enough rays are after them.
+    /// The largest of the parts that can be bare, if enough rays look for hits on them.
     std::vector<uint32_t> bare() const {
         std::vector<uint32_t> found;
         for (uint32_t i = 0; i < parts_.size(); i++)
@@ -100,8 +100,8 @@ class Grouping {
         return found;
     }
 
-    /// Splits as far as it goes, then takes back what does not pay: that it does may show only after several splits (a
-    /// square town has to be split along both of its sides).
+    /// Splits as far as possible, then takes back the splits that do not pay: whether they do may show only after
+    /// several (a square town has to be split along both of its sides).
     Result split(std::vector<uint32_t> group, int depth) const {
         const Extent all = extent_of(group);
         Result whole{all.cost(), {group}};

@@ -24,7 +24,7 @@ void parallel_for(size_t count, size_t grain, Work work) {
     try {
         while (others.size() + 1 < useful) others.emplace_back(take);
     } catch (const std::system_error&) {
-        // No more threads to be had: those that there are do it.
+        // No more threads can be started: those that run do the work.
     }
     take();
     for (std::thread& other : others) other.join();

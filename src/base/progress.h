@@ -6,7 +6,7 @@
 
 namespace peelray {
 
-/// Draws "label [#####     ] 42 %, 3 s left" on standard error while work goes on; nothing if that is no terminal,
+/// Draws "label [#####     ] 42 %, 3 s left" on standard error while work goes on; nothing if that is not a terminal,
 /// or if the work is done within half a second. With a unit it counts: "label [##   ] 12/40 frames, 3.1 frames/s, 9 s
 /// left".
 class Progress {

@@ -71,7 +71,7 @@ std::vector<uint32_t> ring_sizes(uint64_t half) {
         sizes[i] = static_cast<uint32_t>(wanted);
         given += wanted;
     }
-    // What three-vertex rings near the poles took too much comes off the largest ring.
+    // The excess of the three-vertex rings near the poles is taken off the largest ring.
     uint32_t& largest = *std::max_element(sizes.begin(), sizes.end());
     largest = static_cast<uint32_t>(std::max<int64_t>(3, largest - (given - static_cast<int64_t>(half))));
     return sizes;
@@ -100,8 +100,8 @@ std::vector<glm::vec3> smooth_normals(const std::vector<glm::vec3>& positions,
         const glm::vec3 area = glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
         for (int k = 0; k < 3; ++k) normals[t[k]] += area;
     }
-    // The area of a triangle in a 10-million mesh is 1e-6 and its square underflows nothing; the fallback is for safety
-    // only.
+    // The area of a triangle in a mesh of 10 million is 1e-6, and its square does not underflow; the fallback is for
+    // safety only.
     for (size_t i = 0; i < normals.size(); ++i) {
         const float length = glm::length(normals[i]);
         normals[i] = length > 0 ? normals[i] / length : glm::normalize(positions[i]);

@@ -18,7 +18,7 @@ class PartedMesh {
 
     /// Gives all triangles to a part, without a cut.
     void give_all(uint32_t to) { std::fill(parts_.begin(), parts_.end(), to); }
-    /// Gives each triangle of a part to the one that `to` tells for its middle, without a cut.
+    /// Gives each triangle of a part to the one that `to` names for its centre, without a cut.
     void give_rest(uint32_t from, const std::function<uint32_t(const glm::vec3&)>& to);
 
     /// Takes out edges shorter than `shortest`, and turns edges inside of parts where that makes the sharpest corner of
@@ -39,7 +39,7 @@ class PartedMesh {
     ClosedMesh mesh_;
     Field surface_;
     std::vector<uint32_t> parts_;
-    std::vector<float> values_;  ///< of the line at hand, per vertex; 0: on it
+    std::vector<float> values_;  ///< of the current line, per vertex; 0: on it
     std::vector<bool> is_fixed_;
 };
 

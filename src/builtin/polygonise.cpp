@@ -38,7 +38,7 @@ class Grid {
         nodes_ = blocks_ * block + 1u;
         values_.resize(size_t(nodes_.x) * nodes_.y * nodes_.z);
         active_.resize(size_t(blocks_.x) * blocks_.y * blocks_.z);
-        // Half the diagonal of a block and of a cube more, so that the neighbours of every crossed edge are there.
+        // Half the diagonal of a block, plus that of a cube so that the neighbours of every crossed edge are included.
         const float reach = 0.5f * std::sqrt(3.f) * cell * float(block) + 0.01f * cell;
         parallel_for(active_.size(), 8, [&](size_t i) {
             const glm::vec3 middle = at(block_of(i) * block) + 0.5f * cell * float(block);

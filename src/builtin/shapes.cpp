@@ -28,7 +28,7 @@ int SceneBuilder::again(const char* name, int mesh, const glm::mat4& transform) 
 }
 
 int SceneBuilder::tiles(uint32_t n, uint32_t first, uint32_t second, bool both_directions) {
-    // Several texels a tile: bilinear filtering then blurs only a thin seam between two tiles.
+    // Several texels per tile: bilinear filtering then blurs only a thin seam between two tiles.
     constexpr uint32_t texels = 32;
     Texture texture;
     texture.name = "tiles";

@@ -43,7 +43,7 @@ class SceneBuilder {
 Material matte(const char* name, const glm::vec3& color);
 Material metal(const char* name, const glm::vec3& color);
 
-/// A sphere as a subdivided cube (no poles, no slivers) with n×n squares a side.
+/// A sphere as a subdivided cube (no poles, no slivers) with n×n squares per side.
 Primitive sphere(const glm::vec3& center, float radius, uint32_t n);
 /// A torus around the y axis.
 Primitive torus(const glm::vec3& center, float ring_radius, float tube_radius, uint32_t ring_segments,

@@ -57,7 +57,7 @@ struct SoftGroup {
     std::vector<Cut> cuts;
 
     float at(const glm::vec3& p) const;
-    /// Precomputes the box outside of which `at` need not be asked.
+    /// Precomputes the box outside of which `at` need not be called.
     void measure();
     /// Less than what `at` gives, and cheap; measure() must have been called.
     float at_least(const glm::vec3& p) const;

@@ -217,7 +217,7 @@ Primitive piece_of(const PartedMesh& dress, Garment garment, const SoftBody& bod
     return out;
 }
 
-/// Joint weights of a body that the head alone carries.
+/// Joint weights of a body that only the head carries.
 void hang_on_head(Primitive& p) {
     JointWeights head;
     head.joints[0] = uint16_t(Joint::head);

@@ -1,4 +1,4 @@
-// A pool whose water is simulated, with things that swim in it.
+// A pool whose water is simulated, with bodies that float in it.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

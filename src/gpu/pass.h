@@ -14,7 +14,7 @@ namespace peelray {
 
 /// A storage buffer, image or acceleration structure of a shader as reflection sees it.
 struct ShaderBinding {
-    std::string name;  ///< the block's name less its suffix "_block" (see shaders/common.glsl), or the variable's
+    std::string name;  ///< the block's name less "_block" (see shaders/common/common.glsl), or the variable's
     uint32_t binding;
     bool reads, writes;
     bool image = false;      ///< read texel by texel, without a sampler

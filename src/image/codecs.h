@@ -15,7 +15,7 @@ inline constexpr uint64_t max_pixels = uint64_t(1) << 28;
 /// Largest finite half; what an infinite pixel becomes.
 inline constexpr float max_half = 65504.0f;
 
-/// Throws Error if no image of this size can be (zero, negative or beyond the limits); `doing` is "read" or "write".
+/// Throws Error if no image of this size can exist (zero, negative or beyond the limits); `doing` is "read" or "write".
 void check_size(std::string_view doing, const std::filesystem::path& path, int64_t width, int64_t height);
 
 /// All bytes of a file or pipe. Throws Error (with the system's reason) if it cannot be read or is empty.

@@ -177,7 +177,7 @@ void filter_down(const Plane& from, uint32_t y, const Taps& taps, std::vector<fl
 
 // ---- One picture as a viewer sees it --------------------------------------------------------------------------------
 
-/// A picture filtered across; filter_down() is what lacks.
+/// A picture filtered across; filter_down() does the rest.
 struct Across {
     Plane achromatic, red_green, blue_yellow_0, blue_yellow_1;
     Plane smooth, edge, point;

@@ -28,7 +28,7 @@ struct Image8 {
 /// Reads Radiance (.hdr) or OpenEXR (.exr) by its content: RGB(A), Y, luminance-chroma, one channel (grey) or one
 /// layer's R, G, B; of several parts the first flat one; the data window is the image. Every pixel comes out finite and
 /// ≥ 0: NaN and negative values become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error:
-/// missing, broken, not one of the two, empty, deep data only, more than 2^16 a side or 2^28 pixels.
+/// missing, broken, not one of the two, empty, deep data only, more than 2^16 pixels per side or 2^28 in all.
 Image read_hdr(const std::filesystem::path& path);
 
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
@@ -60,8 +60,8 @@ void write_atomically(const std::filesystem::path& path,
 /// the same moment. Returns whether it wrote.
 bool write_if_absent(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
 
-/// Removes what killed runs left of half-written files in a folder: only what was not touched for a day, since another
-/// run may be writing there.
+/// Removes half-written files that killed runs left in a folder: only those not touched for a day, since another run
+/// may be writing there.
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
 }  // namespace peelray

@@ -29,7 +29,7 @@ namespace {
 bool jpeg_is_whole(std::string_view bytes) {
     size_t at = 2;
     while (at + 4 <= bytes.size()) {
-        if (uint8_t(bytes[at]) != 0xff) return true;  // not as expected: stb shall judge
+        if (uint8_t(bytes[at]) != 0xff) return true;  // not as expected: left to stb
         const uint8_t marker = uint8_t(bytes[at + 1]);
         if (marker == 0xff) {  // a fill byte
             ++at;
@@ -41,7 +41,7 @@ bool jpeg_is_whole(std::string_view bytes) {
     return false;
 }
 
-/// stb calls a PNG whose header says too much "unknown"; the user shall read the size.
+/// stb calls a PNG whose header claims too much "unknown"; the user should see the size.
 void check_png_size(const std::filesystem::path& path, std::string_view bytes) {
     if (!bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.size() < 24) return;
     int64_t sides[2] = {0, 0};

@@ -22,7 +22,7 @@ struct RoutedSetup {
 /// `layered`: each LDI is a layer of the targets.
 RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Sampling sampling, bool layered);
 
-/// The setup of a pass whose fragments are tested for holes (shaders/ldc_routed_alpha.glsl).
+/// The setup of a pass whose fragments are tested for holes (shaders/ldc/ldc_routed_alpha.glsl).
 RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles);
 
 /// The power of two that holds LDIs of so many pixels a side.

@@ -43,7 +43,7 @@ class FolderIo : public Assimp::IOSystem {
     }
 
   private:
-    // No exception may cross Assimp here; note_missing_libraries() tells the user what could not be had.
+    // No exception may cross Assimp here; note_missing_libraries() tells the user what could not be read.
     const Bytes* find(std::string_view file) {
         std::string relative(file.starts_with(virtual_folder) ? file.substr(virtual_folder.size()) : file);
         std::replace(relative.begin(), relative.end(), '\\', '/');
@@ -64,7 +64,7 @@ class FolderIo : public Assimp::IOSystem {
     std::list<Bytes> side_files_;  ///< a list: streams point into its elements
 };
 
-/// A material library that is missing or lies outside of the file's folder costs the materials only, so it is a note.
+/// A material library that is missing or outside the file's folder only costs the materials, so it is a note.
 void note_missing_libraries(const Bytes& bytes, const std::filesystem::path& folder, std::vector<std::string>& notes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr std::string_view key = "mtllib ";

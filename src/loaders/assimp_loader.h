@@ -24,7 +24,7 @@ size_t check_ply(std::span<const uint8_t> bytes, const std::string& name);
 void check_off(std::span<const uint8_t> bytes, const std::string& name);
 
 /// A material of an MTL file (or Assimp's default). Reads the map_Kd texture from `folder`, never from outside of it; a
-/// texture that cannot be had becomes a note.
+/// texture that cannot be read becomes a note.
 Material convert_material(const aiMaterial& from, const std::filesystem::path& folder, Scene& scene);
 
 }  // namespace peelray

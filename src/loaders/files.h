@@ -11,7 +11,7 @@ namespace peelray {
 
 using Bytes = std::vector<uint8_t>;
 
-/// The whole file. Throws Error when it is missing, no regular file, or unreadable; `where` says who asked for it.
+/// The whole file. Throws Error when it is missing, not a regular file, or unreadable; `where` says who asked for it.
 Bytes read_file(const std::filesystem::path& path, const std::string& where = "");
 
 /// Adds a file to those that were read, unless it is there already.
@@ -20,7 +20,7 @@ void remember_file(std::vector<std::filesystem::path>& files, const std::filesys
 /// Undoes %XX. Throws Error (prefixed with `where`) for a stray '%' or a NUL byte.
 std::string percent_decode(std::string_view text, const std::string& where);
 
-/// Decodes "data:[type][;base64],…"; throws Error for what is no valid data URI.
+/// Decodes "data:[type][;base64],…"; throws Error for what is not a valid data URI.
 Bytes decode_data_uri(std::string_view uri, const std::string& where);
 bool is_data_uri(std::string_view uri);
 

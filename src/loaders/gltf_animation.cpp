@@ -139,7 +139,7 @@ class AnimationReader {
         if (in.components != 1 || !in.is_float())
             fail("{}: key times must be single floats, {} has {} components of type {}", where, in.where, in.components,
                  in.component_type);
-        // Weights come one number an element, however many targets there are.
+        // Weights are stored as one number per element, however many targets there are.
         const uint32_t components = channel.path == AnimationChannel::Path::weights ? 1 : channel.width;
         if (out.components != components)
             fail("{}: its values need {} components, {} has {}", where, components, out.where, out.components);

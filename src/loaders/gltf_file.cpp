@@ -109,7 +109,7 @@ GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) const {
 }
 
 // tinygltf undoes %XX wrongly, knows few kinds of data URIs, and wants buffers of exactly byteLength bytes. So it sees
-// the buffer's number instead of the URI, and asks our reader for that. Of images it sees a name that is no file: it
+// the buffer's number instead of the URI, and asks our reader for that. Of images it sees a name that is not a file: it
 // would read all of them, and take those of buffer views without looking at the ranges.
 void GltfFile::take_uris(json& checked, std::optional<size_t> glb_bytes) {
     for (json& buffer : checked["buffers"]) {

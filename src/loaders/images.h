@@ -10,7 +10,7 @@
 namespace peelray {
 
 /// Fills size and texels; 16-bit images are reduced to 8 bits. Throws Error, prefixed with `where`, for bytes that are
-/// no such image, for a truncated one, and for a side of more than 16384 pixels.
+/// not such an image, for a truncated one, and for a side of more than 16384 pixels.
 Texture decode_image(std::span<const uint8_t> bytes, const std::string& where);
 
 /// Checks that the bytes begin like an image that decode_image reads, without decoding the pixels.

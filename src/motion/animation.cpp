@@ -77,7 +77,7 @@ void carry_along(const Scene& scene, Moment& moment) {
     }
 }
 
-/// Is the animation that makes go on what is generated among these?
+/// Is the animation that drives what is generated among these?
 bool generates(const Scene& scene, const std::vector<const Animation*>& animations) {
     return std::any_of(animations.begin(), animations.end(), [&](const Animation* animation) {
         return animation - scene.animations.data() == scene.generated.animation;

@@ -142,7 +142,7 @@ Box bounds_over(const Scene& scene, const std::string& which) {
             if (node.mesh < 0) continue;
             for (const Primitive& primitive : meshes[size_t(node.mesh)]) {
                 if (is_rigid(primitive, node) && moment.worlds[n] == rest.worlds[n]) continue;
-                // What leaves the range of floats is refused where that moment is shown.
+                // Positions beyond the range of floats are refused when that moment is shown.
                 for (const glm::vec3& p : positions_of(scene, moment, n, primitive))
                     if (is_finite(p)) box.add(p);
             }

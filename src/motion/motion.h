@@ -1,4 +1,4 @@
-// What of a scene can move: what its animations reach.
+// What can move in a scene: what its animations reach.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Motion {
     std::vector<bool> moves;   ///< its own translation, rotation or scale
     std::vector<bool> scales;  ///< its own scale
     std::vector<bool> morphs;  ///< its weights
-    bool generates = false;    ///< what is generated goes on (Scene::generated)
+    bool generates = false;    ///< what is generated moves (Scene::generated)
 };
 
 /// Of the animation `which` (as moment_of() takes it; empty: none). Throws Error for an unknown one.

@@ -80,7 +80,7 @@ class Surface {
     uint32_t row_;
 };
 
-/// As shaders/water_floats.comp.
+/// As shaders/motion/water_floats.comp.
 glm::mat4 float_transform(const Surface& surface, const Water::Float& f, double time) {
     const glm::vec3 drift = drift_of(f, time);
     const glm::dvec2 at(drift.x, drift.y);

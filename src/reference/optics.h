@@ -1,6 +1,6 @@
 // What light does at a surface, in double precision: Fresnel, Snell, microfacets, random numbers, tone curves. The
-// rules are those of shaders/shading.glsl; the arithmetic is written anew, so that each checks the other. Private to
-// src/reference.
+// rules are those of shaders/path/shading.glsl; the arithmetic is written independently, so that each checks the other.
+// Private to src/reference.
 #pragma once
 
 #include <glm/glm.hpp>

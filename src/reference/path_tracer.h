@@ -16,11 +16,11 @@ namespace peelray {
 /// all shading is in double precision. So a picture differs from the GPU's where intersections do, and by rounding.
 class PathTracer {
   public:
-    /// `scene`, `geometry` and `environment` must outlive it. Throws Error if Embree has no room.
+    /// `scene`, `geometry` and `environment` must outlive it. Throws Error if Embree runs out of memory.
     PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment);
     ~PathTracer();
 
-    /// `threads`: 0 for all cores. The picture does not depend on it. `progress` is told the share done, [0, 1], from
+    /// `threads`: 0 for all cores. The picture does not depend on it. `progress` receives the share done, [0, 1], from
     /// the calling thread only; if it throws, all threads stop and the exception goes on. Throws Error for impossible
     /// settings, naming the option.
     Picture render(const PictureSettings& settings, const std::function<void(double)>& progress = {},

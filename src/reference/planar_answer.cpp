@@ -6,7 +6,7 @@
 namespace peelray {
 namespace {
 
-/// Does `holds` of some parallel ray at most a voxel beside?
+/// Is `holds` true for some parallel ray at most a voxel away?
 template <typename Holds>
 bool any_beside(const OracleRay& ray, double voxel, Holds holds) {
     const glm::dvec3 d = glm::normalize(ray.direction);

@@ -1,4 +1,4 @@
-// How far an answer is off that knows surfaces only to a voxel.
+// How far off an answer is that knows surfaces only to within a voxel.
 #pragma once
 
 #include "reference/oracle.h"
@@ -9,10 +9,10 @@ namespace peelray {
 /// infinite: hit against miss.
 double distance_off(const Geometry& geometry, const OracleRay& ray, double t, const OracleHit& right);
 
-/// Is the hit at `t` right within a voxel for a parallel ray that runs at most a voxel beside the ray? Samples know
-/// edges no better than that.
+/// Is the hit at `t` right within a voxel for a parallel ray at most a voxel away from the ray? Samples know edges no
+/// better than that.
 bool right_beside(const Oracle& oracle, const Geometry& geometry, const OracleRay& ray, double t, double voxel);
-/// The same of an any-hit answer.
+/// The same for an any-hit answer.
 bool occluded_beside(const Oracle& oracle, const OracleRay& ray, bool occluded, double voxel);
 
 }  // namespace peelray

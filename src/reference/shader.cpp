@@ -206,7 +206,7 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     const Optics& m = context_.surfaces.optics(s.material);
     glm::dvec3 diffuse = (1 - m.metallic) * (1 - m.transmission) * s.base_color / pi;
     if (diffuse == glm::dvec3(0)) return diffuse;
-    // What the surface mirrors does not reach its body: the share that scatter() gives to the reflection.
+    // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
     if (m.roughness < mirror_roughness)
         diffuse *= 1 - fresnel_dielectric(cosine, m.ior);

@@ -20,7 +20,7 @@ struct Optics {
     bool transmits() const { return transmission > 0 && metallic < 1; }
 };
 
-/// What shading needs to know of a hit (see Surface in shaders/frame.glsl).
+/// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
 struct Surface {
     glm::dvec3 position;
     glm::dvec3 geometric;     ///< unit normal of the triangle, on the ray's side

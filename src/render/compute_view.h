@@ -19,7 +19,7 @@ class ComputeView {
     }
 
     /// Finds the triangles for rays through `jitter` of each pixel, [0, 1)²: what `target.visibility` then holds are
-    /// the numbers of drawn triangles (shaders/seen.glsl). Counts in the queues' counters, which must be clear.
+    /// the numbers of drawn triangles (shaders/view/seen.glsl). Counts in the queues' counters, which must be clear.
     void record(Commands& commands, const GpuScene& scene, const ViewTarget& target, const PathQueues& queues,
                 const glm::vec2& jitter);
 

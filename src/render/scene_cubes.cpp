@@ -20,7 +20,7 @@ float longest_side(const Assembly::Body& body) {
     return std::max({size.x, size.y, size.z, 0.0f});
 }
 
-/// Not of corners that builds drop (shaders/bounds.glsl).
+/// Not of corners that builds drop (shaders/common/bounds.glsl).
 bool is_bounded(const Assembly::Body& body) {
     const glm::vec3 far = glm::max(glm::abs(body.lower), glm::abs(body.upper));
     return std::max({far.x, far.y, far.z}) < 1e30f;

@@ -7,7 +7,8 @@
 namespace peelray {
 namespace {
 
-/// An alpha this little below the cutoff reaches it: rounding makes no holes where both are equal (as in shaders/).
+/// An alpha this little below the cutoff counts as reaching it: rounding makes no holes where both are equal (as in
+/// shaders/).
 constexpr double rounding = 1e-6;
 
 }  // namespace

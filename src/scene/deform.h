@@ -13,7 +13,7 @@ struct Deformed {
     bool mirrors = false;  ///< the transform turns the triangles inside out
 };
 
-/// Is the primitive's shape at rest all that there is?
+/// Does the primitive have only its shape at rest?
 inline bool is_rigid(const Primitive& primitive, const Node& node) {
     return primitive.targets.empty() && (primitive.joints.empty() || node.skin < 0);
 }
@@ -27,7 +27,7 @@ Primitive with_surface(const Primitive& primitive, const Moment::Surface& surfac
 Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive, std::span<const float> weights,
                 std::span<const glm::mat4> worlds, const glm::mat4& world);
 
-/// The same for a primitive whose shape at rest is all that there is.
+/// The same for a primitive that has only its shape at rest.
 Deformed transformed(const Primitive& primitive, const glm::mat4& matrix);
 
 /// Where the vertices of a node's primitive are at a moment.

@@ -1,5 +1,5 @@
 // From radiance to what a display shows, in double precision; the GPU's pass of the same rules is
-// shaders/accumulate.comp.
+// shaders/path/accumulate.comp.
 #pragma once
 
 #include "scene/picture.h"

@@ -93,7 +93,7 @@ Environment sky_environment(const glm::vec3& sun_direction) {
             const glm::vec3 d = environment_direction((x + 0.5f) / sky.width, (y + 0.5f) / sky.height);
             const float height = std::max(d.y, 0.0f);
             glm::vec3 color = glm::mix(horizon, zenith, std::pow(height, 0.45f));
-            // Haze: the horizon melts into the ground over about a degree, so that it does not alias.
+            // Haze: the horizon blends into the ground over about a degree, so that it does not alias.
             const glm::vec3 below = glm::mix(haze, ground, std::pow(std::max(-d.y, 0.0f), 0.5f));
             color = glm::mix(color, below, glm::smoothstep(0.0f, 1.0f, std::clamp(-d.y / 0.02f, 0.0f, 1.0f)));
             const float near_sun = std::max(glm::dot(d, sun_direction), 0.0f);

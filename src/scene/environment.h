@@ -29,7 +29,7 @@ struct Environment {
 /// measured ones: sun and sky give a horizontal surface about 3.6 and 1.6 units of irradiance.
 Environment sky_environment(const glm::vec3& sun_direction);
 
-/// The sun's place when the user gives none.
+/// The sun's direction when the user gives none.
 glm::vec3 default_sun_direction();
 
 /// The same radiance from everywhere.

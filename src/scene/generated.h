@@ -15,17 +15,17 @@ struct Water {
     int node = -1;       ///< its mesh has one primitive: (cells + 1)² vertices, row by row along x
     uint32_t cells = 0;  ///< along each side
     float size = 0;      ///< of the square around the node's origin, metres
-    float speed = 0;     ///< of waves, c, metres a second
+    float speed = 0;     ///< of waves, c, metres per second
     float damping = 0;   ///< k, per second
     uint32_t steps_per_second = 0;
     std::vector<float> start;  ///< heights at time 0, when all is at rest
 
-    /// Something that swims: it stands on the surface's mean height and slope under it.
+    /// Something that floats: it rests on the mean height and slope of the surface under it.
     struct Float {
         int node = -1;
         glm::vec2 around{0};  ///< x, z of the circle that it drifts along
         float drift = 0;      ///< radius of the circle
-        float period = 1;     ///< seconds for a round
+        float period = 1;     ///< seconds per round
         float phase = 0;      ///< share of a round at time 0
         float radius = 0;     ///< of what it displaces
     };
@@ -37,7 +37,7 @@ struct Water {
 /// A drop: what it adds to the velocities at the distance r is strength (1 - r²/2w²) exp(-r²/2w²), which adds no water.
 struct WaterDrop {
     glm::vec2 at{0};
-    float strength = 0;  ///< metres a second; 0: none falls
+    float strength = 0;  ///< metres per second; 0: none falls
     float width = 1;     ///< w, metres
 };
 
@@ -54,18 +54,18 @@ WaterSteps steps_until(const Water& water, double time);
 /// Where a float is at a moment: x, z, and how far it has turned about the vertical, radians.
 glm::vec3 drift_of(const Water::Float& f, double time);
 
-/// Bodies that fly out of a fountain, bounce and vanish, over and over (shaders/swarm_motion.h).
+/// Bodies that fly out of a fountain, bounce and vanish, over and over (shaders/motion/swarm_motion.h).
 struct Swarm {
     std::vector<int> nodes;  ///< one per body
-    float period = 1;        ///< seconds, after which all is as before
+    float period = 1;        ///< seconds, after which everything repeats
 };
 
-/// What of a scene is generated, and which of its animations makes it go on.
+/// What is generated in a scene, and which of its animations drives it.
 struct Generated {
     std::vector<Water> waters;
     std::vector<Swarm> swarms;
     int animation = -1;
-    /// All that is generated stays inside this box, at any time.
+    /// Everything that is generated stays inside this box at all times.
     struct Reach {
         glm::vec3 lower{0}, upper{0};
     } reach;

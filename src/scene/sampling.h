@@ -1,4 +1,4 @@
-// Texture lookups in double precision, by the rules of shaders/textures.glsl.
+// Texture lookups in double precision, by the rules of shaders/common/textures.glsl.
 #pragma once
 
 #include <cmath>

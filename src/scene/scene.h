@@ -39,7 +39,7 @@ struct Material {
     float metallic = 0;              ///< [0, 1]
     float roughness = 1;             ///< perceptual, [0, 1]; GGX alpha is its square
     glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
-    float transmission = 0;          ///< share of the non-reflected light that passes, [0, 1]
+    float transmission = 0;          ///< share of the light that is not reflected and passes through, [0, 1]
     float ior = 1.5f;                ///< index of refraction, ≥ 1
     float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
@@ -89,7 +89,7 @@ struct Skin {
     std::vector<glm::mat4> inverse_bind;  ///< mesh to joint, one per joint
 };
 
-/// Where a node stands in its parent, by parts: scaled, then rotated, then moved.
+/// A node's transform in its parent, in parts: scaled, then rotated, then moved.
 struct Placement {
     glm::vec3 translation{0};
     glm::quat rotation{1, 0, 0, 0};
@@ -110,7 +110,7 @@ struct Light {
     Kind kind = Kind::directional;
     glm::vec3 color{1};             ///< linear, times intensity: lux (directional), candela (point, spot)
     glm::vec3 position{0};          ///< world space
-    glm::vec3 direction{0, -1, 0};  ///< unit, the way the light travels
+    glm::vec3 direction{0, -1, 0};  ///< unit, the direction in which the light travels
     float range = std::numeric_limits<float>::infinity();  ///< metres, point and spot only
     float inner_cone = 0, outer_cone = 0.785398f;          ///< spot: half angles, radians
 };
@@ -156,7 +156,7 @@ struct Animation {
 
 struct Scene {
     std::string name;                          ///< "builtin:teapots" or the file's name
-    std::vector<std::filesystem::path> files;  ///< all that were read for it, its own first, each once; built-in: none
+    std::vector<std::filesystem::path> files;  ///< all that were read, its own first, each once; built-in: none
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
