@@ -1,7 +1,7 @@
 // The parts of `peelray bench`. Each throws Error, one line, also where it was interrupted; finished rows are kept.
 #pragma once
 
-#include "cli/program.h"
+#include "cli/arguments.h"
 #include "gpu/device.h"
 
 namespace peelray {

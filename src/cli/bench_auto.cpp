@@ -7,9 +7,11 @@
 #include "bench/clock_probe.h"
 #include "cli/bench.h"
 #include "cli/bench_scenes.h"
+#include "cli/messages.h"
 #include "cli/paper_table.h"
 #include "cli/prepare.h"
 #include "cli/stats_json.h"
+#include "cli/version.h"
 
 namespace peelray {
 namespace {
@@ -20,12 +22,14 @@ constexpr uint32_t kWarmUpOfChoice = 3;  ///< frames, beside the renderer's own 
 
 /// A frame's time with one choice.
 struct Choice {
-    std::string hit = "auto";
+    std::optional<HitTest> hit;  ///< none: auto
     std::optional<uint32_t> ldc;
     double ms = 0;
-    std::string chosen = {};  ///< the hit test that it came to
+    HitTest chosen = HitTest::exact;  ///< the hit test that it came to
 
-    std::string text() const { return ldc ? fmt::format("{} {}", hit, *ldc) : fmt::format("auto ({})", chosen); }
+    std::string text() const {
+        return ldc ? fmt::format("{} {}", name_of(hit), *ldc) : fmt::format("auto ({})", name_of(chosen));
+    }
 };
 
 /// One scene, everything rebuilt or kept: the automatic choice and the best fixed ones.
@@ -100,12 +104,12 @@ void AutoCheck::time(const PictureArguments& arguments, const PreparedScene& sce
     for (const RenderStats::FrameTime& time : result.stats.frames) ms.push_back(time.frame_ms);
     ms.erase(ms.begin(), ms.end() - a_.repeat);
     choice.ms = spread_of(ms).median;
-    choice.chosen = name_of(result.stats.hit);
+    choice.chosen = result.stats.hit;
 }
 
 void AutoCheck::measure(PreparedScene& scene, const PictureArguments& picture, Renderer& renderer, AutoRow& row) {
     time(picture, scene, renderer, row.automatic);
-    for (const std::string& hit : a_.hits)
+    for (const HitTest hit : a_.hits)
         for (const auto& ldc : a_.ldc) {
             if (!ldc) continue;
             Choice choice{hit, ldc};
@@ -127,14 +131,14 @@ void AutoCheck::add(const AutoRow& row, Progress& bar) {
     const bool measured = row.left_out.empty();
     Json fixed = Json::array();
     for (const Choice& choice : row.fixed)
-        fixed.push_back({{"hit", choice.hit}, {"n", *choice.ldc}, {"frame_ms", choice.ms}});
+        fixed.push_back({{"hit", name_of(choice.hit)}, {"n", *choice.ldc}, {"frame_ms", choice.ms}});
     rows_.push_back({{"scene", row.scene},
                      {"shown", row.shown},
                      {"stands_in", row.stands_in},
                      {"triangles", row.triangles},
                      {"cubes", row.rebuilt ? "rebuilt" : "kept"},
                      {"left_out", measured ? Json(nullptr) : Json(row.left_out)},
-                     {"auto_hit", row.automatic.chosen},
+                     {"auto_hit", measured ? name_of(row.automatic.chosen) : ""},
                      {"auto_ms", row.automatic.ms},
                      {"ratio_to_best", row.ratio()},
                      {"ratio_to_best_of_its_hit_test", row.ratio_same()},
@@ -174,7 +178,7 @@ void AutoCheck::measure(const std::string& name, Progress& bar) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        row.left_out = error.line("--");
+        row.left_out = message_of(error);
         add(row, bar);
     }
     device_.check_validation();

@@ -5,8 +5,8 @@
 #include "base/interrupt.h"
 #include "cli/bench.h"
 #include "cli/bench_scenes.h"
-#include "cli/prepare.h"
-#include "cli/values.h"
+#include "cli/commands.h"
+#include "cli/outputs.h"
 #include "image/image.h"
 
 namespace peelray {
@@ -24,13 +24,13 @@ BenchArguments with_defaults(BenchArguments a) {
         return a;
     }
     if (a.scenes.empty()) a.scenes = a.quick ? quick_bench_scenes() : default_bench_scenes();
-    if (a.hits.empty()) a.hits = {"exact", "planar"};
+    if (a.hits.empty()) a.hits = {HitTest::exact, HitTest::planar};
     if (a.auto_check) {
         if (a.ldc.empty()) a.ldc = Resolutions{64, 128, 192, 256, 384, 512, 768, 1024};
         return a;
     }
-    if (a.traversals.empty()) a.traversals = {"voxel"};
-    if (a.rays.empty()) a.rays = ray_kind_names();
+    if (a.traversals.empty()) a.traversals = {Traversal::voxel};
+    if (a.rays.empty()) a.rays = values_of<RayKind>();
     if (a.ldc.empty()) a.ldc = Resolutions{std::nullopt, 256, 512, 1024};
     if (!a.sizes && !a.quick)
         a.sizes = {{360, 280}, {640, 512}, {1280, 1024}, {2560, 2048}, {4096, 3280}, {6400, 5120}};
@@ -38,25 +38,10 @@ BenchArguments with_defaults(BenchArguments a) {
 }
 
 void check_arguments(const BenchArguments& a) {
-    PictureArguments p;
-    p.repeat = a.repeat;
-    std::vector<glm::uvec2> sizes = a.sizes.value_or(std::vector<glm::uvec2>());
-    sizes.push_back(a.size);
-    for (const glm::uvec2& size : sizes) {
-        p.size = size;
-        check_ranges(p);
-    }
-    for (const auto& ldc : a.ldc) {
-        TracingArguments tracing;
-        tracing.ldc = ldc;
-        tracing.block = a.block;
-        tracing.tolerance = a.tolerance.value_or(tracing.tolerance);
-        tracing.check();
-    }
     if (!a.paper) {
         for (const std::string& scene : a.scenes) check_bench_scene(scene);
-        for (const std::string& hit : a.hits)
-            if (hit == "tolerance")
+        for (const HitTest hit : a.hits)
+            if (hit == HitTest::tolerance)
                 fail("'tolerance' has no right answers to compare with: it is measured by 'bench --paper' (--hits)");
     }
     std::error_code error;

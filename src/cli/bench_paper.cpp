@@ -6,10 +6,10 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "cli/bench.h"
+#include "cli/messages.h"
 #include "cli/paper_table.h"
 #include "cli/picture_maker.h"
 #include "cli/stats_json.h"
-#include "cli/values.h"
 #include "image/image.h"
 #include "motion/animation.h"
 
@@ -19,23 +19,28 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A way to build cubes and trace in them, by the names of the command line.
+/// A way to build cubes and trace in them.
 struct Combination {
-    std::string builder, traversal, hit;
+    BuilderKind builder;
+    Traversal traversal;
+    HitTest hit;
 };
 
 /// The paper's system and ours; where a list was given, or --all, everything.
 std::vector<Combination> choose_combinations(const BenchArguments& a) {
     if (!a.all && a.builders.empty() && a.traversals.empty() && a.hits.empty())
-        return {{"peel", "two-level", "tolerance"}, {"compute", "voxel", "exact"}, {"compute", "voxel", "planar"}};
-    const auto chosen = [](const std::vector<std::string>& list, const std::vector<std::string>& all) {
-        return list.empty() ? all : list;
+        return {{BuilderKind::peel, Traversal::two_level, HitTest::tolerance},
+                {BuilderKind::compute, Traversal::voxel, HitTest::exact},
+                {BuilderKind::compute, Traversal::voxel, HitTest::planar}};
+    // All: from the paper's system to ours.
+    const auto chosen = []<typename Value>(const std::vector<Value>& list) {
+        const std::vector<Value> all = values_of<Value>();
+        return list.empty() ? std::vector<Value>(all.rbegin(), all.rend()) : list;
     };
     std::vector<Combination> combinations;
-    for (const std::string& builder : chosen(a.builders, builder_names()))
-        for (const std::string& traversal : chosen(a.traversals, traversal_names()))
-            for (const std::string& hit : chosen(a.hits, hit_test_names()))
-                combinations.push_back({builder, traversal, hit});
+    for (const BuilderKind builder : chosen(a.builders))
+        for (const Traversal traversal : chosen(a.traversals))
+            for (const HitTest hit : chosen(a.hits)) combinations.push_back({builder, traversal, hit});
     return combinations;
 }
 
@@ -155,7 +160,7 @@ MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Sh
                              const std::function<void(double)>& progress) {
     const uint32_t frames = settings.repeat;
     if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
-    MadePicture made = maker_->make("ldc", settings, shot, progress);
+    MadePicture made = maker_->make(Tracer::ldc, settings, shot, progress);
     std::vector<RenderStats::FrameTime>& times = made.stats.render.frames;
     times.erase(times.begin(), times.end() - frames);
     return made;
@@ -194,7 +199,7 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     tracing.ldc = row.ldc;
     // What the options exclude costs no device: some drivers cannot be opened any number of times by one process.
     rendered_ = false;
-    tracing.check();
+    check(tracing);
     RenderSettings settings = settings_of(arguments_);
     settings.repeat = repeat_;
     settings.cubes.ldc_each = true;
@@ -264,11 +269,12 @@ void PaperBench::write(bool complete) const {
         json["image"] = {a_.size.x, a_.size.y};
         json["frames"] = a_.repeat;
         json["block"] = {a_.block.x, a_.block.y};
-        json["routing"] = a_.routing;
+        json["routing"] = name_of(a_.routing);
         const PictureArguments defaults;
         json["bounces"] = defaults.bounces;
         json["spp"] = defaults.spp;
-        json["effects"] = defaults.effects;
+        for (const Effect effect : values_of<Effect>())
+            if (defaults.effects.has(effect)) json["effects"].push_back(name_of(effect));
         json["rebuild"] = true;
         json["complete"] = complete;
         json["rows"] = rows_;
@@ -287,7 +293,7 @@ void PaperBench::measure(const PaperScene& paper, Progress& bar) {
     try {
         scene.emplace(paper, a_, file);
     } catch (const Error& error) {
-        unusable = error.line("--");
+        unusable = message_of(error);
     }
     for (const Combination& c : combinations_)
         for (const auto& ldc : a_.ldc) {
@@ -307,7 +313,7 @@ void PaperBench::measure(const PaperScene& paper, Progress& bar) {
                 } catch (const Interrupted&) {
                     throw;
                 } catch (const Error& error) {
-                    row.left_out = error.line("--");
+                    row.left_out = message_of(error);
                     scene->recover();
                 }
             }

@@ -13,8 +13,10 @@
 #include "cli/bench_plots.h"
 #include "cli/bench_rows.h"
 #include "cli/bench_scenes.h"
+#include "cli/messages.h"
 #include "cli/prepare.h"
 #include "cli/stats_json.h"
+#include "cli/version.h"
 
 namespace peelray {
 namespace {
@@ -24,16 +26,16 @@ using Json = nlohmann::ordered_json;
 /// Frames before those that are measured, beside the renderer's own first one.
 constexpr uint32_t kFrameWarmUp = 2;
 
-std::vector<RayKind> ray_kinds(const std::vector<std::string>& names) {
-    std::vector<RayKind> kinds;
-    for (size_t i = 0; i < kRayKinds; i++)
-        if (std::find(names.begin(), names.end(), name_of(RayKind(i))) != names.end()) kinds.push_back(RayKind(i));
+/// In the order of the rows' columns.
+std::vector<RayKind> sorted(std::vector<RayKind> kinds) {
+    std::sort(kinds.begin(), kinds.end());
     return kinds;
 }
 
 /// One way of ours to build and trace.
 struct Way {
-    std::string hit, traversal;
+    HitTest hit;
+    Traversal traversal;
     std::optional<uint32_t> ldc;
 };
 
@@ -152,7 +154,7 @@ void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        row.frame_left_out = error.line("--");
+        row.frame_left_out = message_of(error);
         renderer_.reset();
     }
 }
@@ -179,7 +181,7 @@ void MeasuredScene::measure_khr(StructureUpdate update, bool frame, RayRow& row)
         measure(structures, 0, row);
     }
     if (!frame) return;
-    RenderSettings settings = settings_of_way({"exact", "voxel", std::nullopt});
+    RenderSettings settings = settings_of_way({HitTest::exact, Traversal::voxel, std::nullopt});
     settings.tracer = Tracer::khr;
     settings.structures = update;
     settings.rebuild = update != StructureUpdate::keep;
@@ -195,15 +197,16 @@ void MeasuredScene::measure_embree(RayRow& row) {
 class RayBench {
   public:
     explicit RayBench(const BenchArguments& a)
-        : a_(a), kinds_(ray_kinds(a.rays)), device_(DeviceOptions{a.device.device, a.device.validate}) {
+        : a_(a), kinds_(sorted(a.rays)), device_(DeviceOptions{a.device.device, a.device.validate}) {
         check_timestamps(device_);
         // Of planar hits, auto is too fine for a software device in a hurry.
-        if (a.quick) ways_ = {{"exact", "voxel", std::nullopt}, {"planar", "voxel", 256}};
-        for (const std::string& hit : a.hits)
-            for (const std::string& traversal : a.traversals)
+        if (a.quick)
+            ways_ = {{HitTest::exact, Traversal::voxel, std::nullopt}, {HitTest::planar, Traversal::voxel, 256}};
+        for (const HitTest hit : a.hits)
+            for (const Traversal traversal : a.traversals)
                 for (const auto& ldc : a.ldc)
                     if (!a.quick) ways_.push_back({hit, traversal, ldc});
-        for (const std::string& hit : a.hits) series_ways_.push_back({hit, "voxel", std::nullopt});
+        for (const HitTest hit : a.hits) series_ways_.push_back({hit, Traversal::voxel, std::nullopt});
         for (const std::string& scene : a.scenes) rows_in_all_ += ways_.size() + rivals(scene);
         if (!series_sizes().empty()) rows_in_all_ += (series_ways_.size() + 3) * series_sizes().size();
     }
@@ -264,7 +267,7 @@ void RayBench::write(bool complete) {
         json["embree"] = EmbreeContender::version();
         json["image"] = {a_.size.x, a_.size.y};
         json["repeat"] = a_.repeat;
-        json["rays"] = a_.rays;
+        for (const RayKind kind : a_.rays) json["rays"].push_back(name_of(kind));
         json["complete"] = complete;
         json["rows"] = json_rows_;
         write_json(a_.output, json);
@@ -279,7 +282,7 @@ std::string reason_against(const std::function<void()>& work) {
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
-        return error.line("--");
+        return message_of(error);
     } catch (const std::bad_alloc&) {
         return "out of memory: the scene or its rays are too large for this machine";
     }
@@ -305,8 +308,8 @@ void RayBench::add(RayRow row, const std::function<void(RayRow&)>& measure, Prog
 void RayBench::measure_looks(MeasuredScene& scene, const RayRow& row, const std::vector<Way>& ways, Progress& bar) {
     for (const Way& way : ways) {
         RayRow ours = row;
-        ours.contender = way.hit;
-        ours.traversal = way.traversal;
+        ours.contender = name_of(way.hit);
+        ours.traversal = name_of(way.traversal);
         ours.ldc = way.ldc;
         add(
             ours, [&](RayRow& r) { scene.measure_ours(way, !row.series, r); }, bar);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "cli/program.h"
+#include "cli/messages.h"
 
 namespace peelray {
 

@@ -1,7 +1,8 @@
 // The scenes of plain `peelray bench`.
 #pragma once
 
-#include "cli/program.h"
+#include "cli/arguments.h"
+#include "scene/scene.h"
 
 namespace peelray {
 

@@ -6,8 +6,12 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/text.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/outputs.h"
 #include "cli/picture_maker.h"
 #include "cli/stats_json.h"
+#include "cli/version.h"
 #include "image/report.h"
 #include "scene/encoding.h"
 
@@ -16,12 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Words = std::vector<std::string>;
 
 /// One column of the comparison.
 struct Entry {
-    std::string name, tracer, hit;  ///< tracer: empty for another program's picture
-    fs::path file;                  ///< of another program's picture
+    std::string name;
+    std::optional<Tracer> tracer;  ///< none: another program's picture
+    std::optional<HitTest> hit;    ///< none: auto
+    fs::path file;                 ///< of another program's picture
     std::string command;
     Image8 encoded;
     Image radiance;                     ///< empty: not known
@@ -37,7 +42,7 @@ std::string quoted(const std::string& word) {
     return fmt::format("'{}'", out);
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string shell_line(const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) {
         if (!line.empty()) line += ' ';
@@ -47,58 +52,55 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 /// The command that renders one picture of the comparison.
-std::string render_command(const CompareArguments& a, const std::string& name, const std::string& tracer,
-                           const std::string& hit) {
+std::string render_command(const CompareArguments& a, const std::string& name, Tracer tracer,
+                           std::optional<HitTest> hit) {
     std::string file = name + ".png";
     std::replace(file.begin(), file.end(), ' ', '-');
     std::vector<std::string> words = {"peelray", "render", a.scene, "-o", file};
-    for (size_t i = 0; i < a.given.size(); i++) {
-        if (a.given[i] == "--repeat" && tracer == "reference")
-            i++;  // measures GPU frames
-        else
-            words.push_back(a.given[i]);
-    }
-    words.insert(words.end(), {"--tracer", tracer});
-    if (tracer == "ldc") words.insert(words.end(), {"--hit", hit});
-    return joined(words);
+    for (const GivenOption& option : a.given)
+        // --repeat measures frames of a GPU.
+        if (option.name != "repeat" || tracer != Tracer::reference)
+            words.insert(words.end(), option.words.begin(), option.words.end());
+    words.insert(words.end(), {"--tracer", std::string(name_of(tracer))});
+    if (tracer == Tracer::ldc) words.insert(words.end(), {"--hit", name_of(hit)});
+    return shell_line(words);
 }
 
 std::string compare_command(const CompareArguments& a) {
-    const auto list = [](const std::vector<std::string>& names) {
-        std::string text;
-        for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-        return text;
-    };
+    std::string hits;
+    for (const auto& hit : a.hits) hits.append(hits.empty() ? "" : ",").append(name_of(hit));
     std::vector<std::string> words = {"peelray", "compare", a.scene, "-o", a.output.string()};
-    words.insert(words.end(), a.given.begin(), a.given.end());
-    words.insert(words.end(), {"--tracers", list(a.tracers), "--hit", list(a.hits)});
+    for (const GivenOption& option : a.given) words.insert(words.end(), option.words.begin(), option.words.end());
+    words.insert(words.end(), {"--tracers", print_text(a.tracers), "--hit", hits});
     for (const fs::path& picture : a.pictures) words.insert(words.end(), {"--picture", picture.string()});
-    return joined(words);
+    return shell_line(words);
 }
 
-void check_tracing(const CompareArguments& a, const std::string& tracer, const std::string& hit) {
+void check_tracing(const CompareArguments& a, Tracer tracer, std::optional<HitTest> hit) {
     TracingArguments tracing = a.tracing;
     tracing.tracer = tracer;
     tracing.hit = hit;
-    tracing.check();
+    check(tracing);
 }
 
 std::vector<Entry> plan(const CompareArguments& a) {
     std::vector<Entry> entries;
-    for (const std::string& hit : a.hits) check_tracing(a, "ldc", hit);
-    const bool uses_hits = std::find(a.tracers.begin(), a.tracers.end(), "ldc") != a.tracers.end();
-    if (!uses_hits && a.hits != Words{"auto"}) print_note("--hit has no effect without ldc among the --tracers");
-    for (const std::string& tracer : a.tracers) {
-        if (tracer != "ldc") {
-            entries.push_back({tracer, tracer, "auto", {}, render_command(a, tracer, tracer, "")});
+    for (const auto& hit : a.hits) check_tracing(a, Tracer::ldc, hit);
+    const bool uses_hits = std::find(a.tracers.begin(), a.tracers.end(), Tracer::ldc) != a.tracers.end();
+    if (!uses_hits && a.hits != std::vector{std::optional<HitTest>()})
+        print_note("--hit has no effect without ldc among the --tracers");
+    for (const Tracer tracer : a.tracers) {
+        if (tracer != Tracer::ldc) {
+            const char* name = name_of(tracer);
+            entries.push_back({name, tracer, std::nullopt, {}, render_command(a, name, tracer, std::nullopt)});
             continue;
         }
-        for (const std::string& hit : a.hits) {
-            const std::string name = a.hits.size() > 1 ? fmt::format("ldc {}", hit) : "ldc";
+        for (const auto& hit : a.hits) {
+            const std::string name = a.hits.size() > 1 ? fmt::format("ldc {}", name_of(hit)) : "ldc";
             entries.push_back({name, tracer, hit, {}, render_command(a, name, tracer, hit)});
         }
     }
-    for (const Entry& entry : entries) check_tracing(a, entry.tracer, entry.hit);
+    for (const Entry& entry : entries) check_tracing(a, *entry.tracer, entry.hit);
     return entries;
 }
 
@@ -108,7 +110,8 @@ bool is_linear(const fs::path& path) {
 
 /// A picture that another program made.
 Entry read_picture(const CompareArguments& a, const fs::path& path) {
-    Entry entry{path.filename().string(), "", "", path, fmt::format("(given as --picture {})", quoted(path.string()))};
+    Entry entry{path.filename().string(), std::nullopt, std::nullopt, path,
+                fmt::format("(given as --picture {})", quoted(path.string()))};
     if (is_linear(path)) {
         entry.radiance = read_hdr(path);
         const RenderSettings settings = settings_of(a);
@@ -127,7 +130,7 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
 
 void render(Entry& entry, PictureMaker& maker, RenderSettings settings) {
     choose_hit(settings, entry.hit);
-    MadePicture made = maker.make(entry.tracer, settings);
+    MadePicture made = maker.make(*entry.tracer, settings);
     entry.encoded = {made.picture.width, made.picture.height, std::move(made.picture.encoded)};
     entry.radiance = {made.picture.width, made.picture.height, std::move(made.picture.radiance)};
     entry.stats = std::move(made.stats);
@@ -136,7 +139,7 @@ void render(Entry& entry, PictureMaker& maker, RenderSettings settings) {
 /// The picture that the others are compared with.
 size_t choose_reference(const std::vector<Entry>& entries) {
     for (size_t i = 0; i < entries.size(); i++)
-        if (entries[i].tracer == "reference") return i;
+        if (entries[i].tracer == Tracer::reference) return i;
     return entries.size() - 1;
 }
 
@@ -278,7 +281,7 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
         report.notes.push_back(
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
     const Entry& reference = entries[report.reference];
-    if (reference.tracer != "reference" && entries.size() > 1)
+    if (reference.tracer != Tracer::reference && entries.size() > 1)
         report.notes.push_back(
             fmt::format("without --tracers reference the pictures are compared with '{}'", reference.name));
     for (const Entry& entry : entries) {
@@ -307,7 +310,6 @@ void print(const CompareArguments& a, const Report& report) {
 }  // namespace
 
 void run_compare(const CompareArguments& a) {
-    check_ranges(a);
     const std::string extension = lower_extension(a.output);
     if (extension != ".html" && extension != ".htm")
         fail("the report is an HTML file: name '{}' .html", a.output.string());
@@ -332,7 +334,7 @@ void run_compare(const CompareArguments& a) {
     PreparedScene scene = prepare_scene(a);
     watch_interrupts();
     PictureMaker maker(scene, a);
-    for (const Entry& entry : entries) maker.check(entry.tracer);
+    for (const Entry& entry : entries) maker.check(*entry.tracer);
     for (Entry& entry : entries) render(entry, maker, settings_of(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);

@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "base/error.h"
-#include "cli/values.h"
+#include "settings/text.h"
 
 namespace peelray {
 

@@ -3,7 +3,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "cli/program.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
 #include "gpu/device.h"
 #include "loaders/files.h"
 #include "loaders/load.h"

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "cli/content_hash.h"
 #include "cli/stats_json.h"
-#include "cli/values.h"
+#include "cli/version.h"
 #include "image/image.h"
 
 namespace peelray {
@@ -15,67 +15,15 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// As a user would type them, so that a message can say them.
-Json text(const std::string& value) {
-    return value.empty() ? Json(nullptr) : Json(value);
-}
-Json text(const std::optional<glm::vec3>& v) {
-    return v ? Json(fmt::format("{},{},{}", v->x, v->y, v->z)) : Json(nullptr);
-}
-template <typename Number>
-Json text(const std::optional<Number>& number) {
-    return number ? Json(fmt::format("{}", *number)) : Json(nullptr);
-}
-Json text(const glm::uvec2& size) {
-    return fmt::format("{}x{}", size.x, size.y);
-}
-Json flag(bool given) {
-    return given ? Json(true) : Json(nullptr);
-}
-/// Those of `known` that were chosen: their order has no effect.
-Json list(const std::vector<std::string>& chosen, const std::vector<std::string>& known) {
-    std::string names;
-    for (const std::string& name : known)
-        if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) names += (names.empty() ? "" : ",") + name;
-    return names.empty() ? Json(nullptr) : Json(names);
-}
-
-Json settings_of(const RenderArguments& a, const Sequence& sequence, const PreparedScene& scene) {
-    using Number = std::optional<double>;
-    const TracingArguments& t = a.tracing;
-    return {{"--size", text(a.size)},
-            {"--eye", text(a.eye)},
-            {"--look", text(a.look)},
-            {"--up", text(a.up)},
-            {"--fov", text(a.fov)},
-            {"--camera", text(a.camera)},
-            {"--time", sequence.runs ? Json(nullptr) : text(scene.time)},
-            {"--animation", text(scene.animation)},
-            {"--fps", text(sequence.runs ? Number(sequence.fps) : Number())},
-            {"--turntable", text(a.sequence.turntable)},
-            {"--env", text(fs::path(a.env).filename().string())},
-            {"--sky", flag(a.sky)},
-            {"--background", text(a.background)},
-            {"--exposure", text(std::optional(a.exposure))},
-            {"--tonemap", a.tonemap},
-            {"--tracer", t.tracer},
-            {"--effects", list(a.effects, effect_names())},
-            {"--bounces", text(std::optional(a.bounces))},
-            {"--spp", text(std::optional(a.spp))},
-            {"--material", text(a.material)},
-            {"--floor", flag(a.floor)},
-            {"--hit", t.hit},
-            {"--ldc", text(t.ldc)},
-            {"--tolerance", text(std::optional(t.tolerance))},
-            {"--builder", t.builder},
-            {"--traversal", t.traversal},
-            {"--block", text(t.block)},
-            {"--routing", t.routing},
-            {"--batch", t.batch},
-            {"--depth", text(std::optional(t.depth))},
-            {"--rebuild", flag(a.rebuild)},
-            {"--visibility", a.visibility},
-            {"--aov", list(a.aovs, all_aov_names())}};
+/// Settings by their flags, as a user would type them, so that a message can say them.
+Json settings_of(const RenderArguments& arguments, const Sequence& sequence, const PreparedScene& scene) {
+    RenderArguments a = arguments;
+    // What was chosen, where nothing was given; of a file its name, since its content is compared.
+    a.time = sequence.runs ? std::nullopt : scene.time;
+    a.animation = scene.animation;
+    a.sequence.fps = sequence.runs ? std::optional(sequence.fps) : std::nullopt;
+    a.env = fs::path(a.env).filename().string();
+    return manifest_settings(options_of(a));
 }
 
 /// Files by their names as seen from the scene's folder, so that the whole may be moved.
@@ -143,6 +91,18 @@ Json read_manifest(const fs::path& path) {
 }
 
 }  // namespace
+
+Json manifest_settings(const SettingList& settings) {
+    Json json = Json::object();
+    for (const SettingEntry& setting : settings) {
+        if (!setting.info.changes_picture) continue;
+        const std::optional<std::string> text = setting.text();
+        json[fmt::format("--{}", setting.info.name)] = !text             ? Json(nullptr)
+                                                       : setting.is_flag ? Json(true)
+                                                                         : Json(*text);
+    }
+    return json;
+}
 
 fs::path manifest_path(const fs::path& pattern) {
     return pattern.string() + ".json";

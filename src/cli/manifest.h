@@ -11,6 +11,9 @@ namespace peelray {
 /// "frame_%05d.exr.json" for "frame_%05d.exr".
 std::filesystem::path manifest_path(const std::filesystem::path& pattern);
 
+/// Those of `settings` that change pictures, by their flags; null: not chosen.
+nlohmann::ordered_json manifest_settings(const SettingList& settings);
+
 /// All that shapes the pictures: options by their values, the program, what renders, and the content of every file that
 /// was read. What does not, such as the range of frames, is left out. Throws Error if a file vanished.
 nlohmann::ordered_json make_manifest(const RenderArguments& arguments, const Sequence& sequence,

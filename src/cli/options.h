@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "cli/program.h"
+#include "cli/arguments.h"
 
 namespace peelray {
 
@@ -12,8 +12,8 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& arguments);
 void add_trace(CLI::App& program, TraceArguments& arguments);
 void add_bench(CLI::App& program, BenchArguments& arguments);
 
-/// The options of a picture that were given to `compare`, as words that `render` takes as well.
-std::vector<std::string> given_options(const CLI::App& compare);
+/// The options of a picture that were given to `compare`: `render` takes them as well.
+std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& arguments);
 
 /// For help pages.
 std::string builtin_list();

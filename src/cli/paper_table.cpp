@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "cli/messages.h"
 #include "cli/stats_json.h"
+#include "cli/version.h"
 
 namespace peelray {
 
@@ -26,18 +28,27 @@ const std::vector<PaperScene>& paper_scenes() {
          8,
          {{{512, 7, 61}, {1024, 19, 115}}},
          "bunny_7k.off",
-         "mirror",
+         MaterialOverride::mirror,
          "",
          "builtin:blob:6966",
          ""},
-        {"car", "Car", 20264, 12, {{{512, 9, 82}, {1024, 25, 250}}}, "car2.glb", "", "", "builtin:blob:47002", ""},
+        {"car",
+         "Car",
+         20264,
+         12,
+         {{{512, 9, 82}, {1024, 25, 250}}},
+         "car2.glb",
+         std::nullopt,
+         "",
+         "builtin:blob:47002",
+         ""},
         {"dragon",
          "Dragon",
          120'000,
          7,
          {{{512, 12, 205}, {1024, 31, 441}}},
          "chinesedragon.gltf",
-         "mirror",
+         MaterialOverride::mirror,
          "",
          "builtin:blob:100960",
          ""},
@@ -47,7 +58,7 @@ const std::vector<PaperScene>& paper_scenes() {
          6,
          {{{512, 19, 160}, {1024, 53, 346}}},
          "igea.ply",
-         "mirror",
+         MaterialOverride::mirror,
          "",
          "builtin:blob:268686",
          ""},
@@ -57,7 +68,7 @@ const std::vector<PaperScene>& paper_scenes() {
          6,
          {{{512, 5, 44}, {1024, 16, 95}}},
          "tiny.glb",
-         "",
+         std::nullopt,
          "Walk",
          "builtin:walker",
          "walk"},
@@ -89,21 +100,22 @@ static Json spread_json(const Spread& spread) {
 Json row_json(const BenchRow& row) {
     const bool measured = row.left_out.empty();
     const auto if_measured = [&](Json value) { return measured ? std::move(value) : Json(nullptr); };
-    Json json = {{"scene", row.scene->name},
-                 {"shown", row.shown},
-                 {"stands_in", row.stands_in},
-                 {"triangles", row.triangles ? Json(row.triangles) : Json(nullptr)},
-                 {"builder", row.builder},
-                 {"traversal", row.traversal},
-                 {"hit", row.hit},
-                 {"n", row.ldc},
-                 {"tolerance", row.hit == "tolerance" && row.tolerance > 0 ? Json(row.tolerance) : Json(nullptr)},
-                 {"object_pixels", row.object_pixels ? Json(row.object_pixels) : Json(nullptr)},
-                 {"left_out", measured ? Json(nullptr) : Json(row.left_out)},
-                 {"layers", row.layers ? Json(*row.layers) : Json(nullptr)},
-                 {"a_ms", if_measured(spread_json(row.a))},
-                 {"b_ms", if_measured(spread_json(row.b))},
-                 {"frame_ms", if_measured(spread_json(row.frame))}};
+    Json json = {
+        {"scene", row.scene->name},
+        {"shown", row.shown},
+        {"stands_in", row.stands_in},
+        {"triangles", row.triangles ? Json(row.triangles) : Json(nullptr)},
+        {"builder", name_of(row.builder)},
+        {"traversal", name_of(row.traversal)},
+        {"hit", name_of(row.hit)},
+        {"n", row.ldc},
+        {"tolerance", row.hit == HitTest::tolerance && row.tolerance > 0 ? Json(row.tolerance) : Json(nullptr)},
+        {"object_pixels", row.object_pixels ? Json(row.object_pixels) : Json(nullptr)},
+        {"left_out", measured ? Json(nullptr) : Json(row.left_out)},
+        {"layers", row.layers ? Json(*row.layers) : Json(nullptr)},
+        {"a_ms", if_measured(spread_json(row.a))},
+        {"b_ms", if_measured(spread_json(row.b))},
+        {"frame_ms", if_measured(spread_json(row.frame))}};
     Json passes = Json::array();
     for (const RenderStats::Time& pass : row.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["passes"] = if_measured(passes);
@@ -154,9 +166,9 @@ std::string table_row(const BenchRow& row) {
     const auto known = [&](uint64_t number) { return number ? fmt::format("{}", number) : unknown; };
     const std::vector<std::string> cells = {row.scene->title,
                                             known(row.triangles),
-                                            row.builder,
-                                            row.traversal,
-                                            row.hit,
+                                            name_of(row.builder),
+                                            name_of(row.traversal),
+                                            name_of(row.hit),
                                             fmt::format("{}²", row.ldc),
                                             known(row.object_pixels),
                                             row.layers ? fmt::format("{}", *row.layers) : unknown,

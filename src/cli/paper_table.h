@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/program.h"
+#include "cli/arguments.h"
 #include "workspace/stats.h"
 
 namespace peelray {
@@ -24,7 +24,9 @@ struct PaperScene {
     uint32_t triangles;  ///< as the paper has it
     uint32_t layers;     ///< LDIs required, section 3
     std::array<Time, 2> times;
-    const char *file, *material, *animation;    ///< ours: see --material and --animation; empty: none
+    const char* file;  ///< ours
+    std::optional<MaterialOverride> material;
+    const char* animation;                      ///< see --animation; empty: none
     const char *stand_in, *stand_in_animation;  ///< where that file is missing
 
     const Time* at(uint32_t ldc) const;
@@ -47,7 +49,9 @@ struct BenchRow {
     std::string shown;  ///< file name or built-in scene
     bool stands_in = false;
     uint64_t triangles = 0;  ///< with the floor; 0: unknown
-    std::string builder, traversal, hit;
+    BuilderKind builder = BuilderKind::compute;
+    Traversal traversal = Traversal::voxel;
+    HitTest hit = HitTest::exact;
     uint32_t ldc = 0;
     double tolerance = 0;            ///< world units
     std::optional<uint32_t> layers;  ///< samples of the fullest pixel; none: the cube has no such order

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "cli/messages.h"
 #include "motion/animation.h"
 #ifdef PEELRAY_WITH_REFERENCE
 #include "cli/reference_picture.h"
@@ -14,8 +15,9 @@
 namespace peelray {
 
 #ifndef PEELRAY_WITH_REFERENCE
-static constexpr char kNoReference[] =
-    "this program was built without the reference (PEELRAY_REFERENCE=OFF): use --tracer ldc";
+[[noreturn]] static void fail_reference() {
+    fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use {} ldc", setting::tracer);
+}
 #endif
 
 PictureMaker::PictureMaker(PreparedScene& scene, const PictureArguments& arguments)
@@ -29,41 +31,38 @@ Device& PictureMaker::device() {
     return *device_;
 }
 
-std::string PictureMaker::renderer_name(const std::string& tracer) {
-    if (tracer != "reference") return device().info().name;
+std::string PictureMaker::renderer_name(Tracer tracer) {
+    if (tracer != Tracer::reference) return device().info().name;
 #ifdef PEELRAY_WITH_REFERENCE
     return reference_version();
 #else
-    fail(kNoReference);
+    fail_reference();
 #endif
 }
 
-void PictureMaker::check(const std::string& tracer) {
-    if (tracer == "khr") device().check_ray_tracing();
+void PictureMaker::check(Tracer tracer) {
+    if (tracer == Tracer::khr) device().check_ray_tracing();
 }
 
 void PictureMaker::check_validation() const {
     if (device_) device_->check_validation();
 }
 
-MadePicture PictureMaker::make(const std::string& tracer, RenderSettings settings, const Shot& shot,
+MadePicture PictureMaker::make(Tracer tracer, RenderSettings settings, const Shot& shot,
                                const std::function<void(double)>& progress) {
     if (shot.time) move_to(scene_, arguments_, *shot.time);
     settings.camera = turned(scene_.camera, shot.turn);
     settings.bounds = scene_.bounds;
     std::optional<Progress> bar;
-    if (!progress) bar.emplace(tracer == "reference" ? "ray tracing" : "rendering", 1);
+    if (!progress) bar.emplace(tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
     const auto report = [&](double share) {
         check_interrupt();
         bar ? bar->update(share) : progress(share);
     };
-    if (tracer == "reference") return make_reference(settings, report);
-    if (tracer == "cubemap" && settings.ambient && !std::exchange(noted_, true))
-        print_note("--tracer cubemap has no ambient: the sky's diffuse light is unoccluded");
-    settings.tracer = tracer == "cubemap" ? Tracer::cubemap
-                      : tracer == "khr"   ? Tracer::khr
-                      : tracer == "none"  ? Tracer::none
-                                          : Tracer::ldc;
+    if (tracer == Tracer::reference) return make_reference(settings, report);
+    if (tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_, true))
+        print_note(fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
+    settings.tracer = tracer;
     return make_on_gpu(settings, report);
 }
 
@@ -113,7 +112,7 @@ MadePicture PictureMaker::make_reference(const RenderSettings& settings, const s
     return reference_picture(scene_, settings, progress);
 #else
     (void)settings, (void)progress;
-    fail(kNoReference);
+    fail_reference();
 #endif
 }
 

@@ -30,14 +30,14 @@ class PictureMaker {
 
     /// Throws Error: no device, impossible settings, an interrupt, a validation message. `progress` is told the share
     /// done, [0, 1]; without it a bar of its own is drawn.
-    MadePicture make(const std::string& tracer, RenderSettings settings, const Shot& shot = {},
+    MadePicture make(Tracer tracer, RenderSettings settings, const Shot& shot = {},
                      const std::function<void(double)>& progress = {});
 
     /// Throws Error where a tracer cannot render on this device.
-    void check(const std::string& tracer);
+    void check(Tracer tracer);
 
     /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
-    std::string renderer_name(const std::string& tracer);
+    std::string renderer_name(Tracer tracer);
 
     /// Throws Error with the validation layers' first message, if there is any.
     void check_validation() const;

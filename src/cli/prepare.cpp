@@ -6,22 +6,15 @@
 #include <utility>
 
 #include "base/error.h"
-#include "cli/values.h"
+#include "cli/messages.h"
 #include "image/image.h"
 #include "loaders/load.h"
 #include "motion/animation.h"
 #include "motion/bounds.h"
+#include "settings/aovs.h"
 
 namespace peelray {
 namespace {
-
-/// The value that the command line calls `name`; the first for "auto".
-template <typename Value>
-Value named(const std::string& name, std::initializer_list<Value> values) {
-    for (const Value value : values)
-        if (name == name_of(value)) return value;
-    return *values.begin();
-}
 
 Environment choose_environment(const PictureArguments& a, const Scene& scene) {
     if (!a.env.empty()) {
@@ -35,13 +28,15 @@ Environment choose_environment(const PictureArguments& a, const Scene& scene) {
 }
 
 const Camera& find_camera(const Scene& scene, const std::vector<Camera>& cameras, const std::string& name) {
-    if (cameras.empty()) fail("the scene '{}' has no cameras: leave --camera out, or use --eye and --look", scene.name);
+    if (cameras.empty())
+        fail("the scene '{}' has no cameras: leave {} out, or use {} and {}", scene.name, setting::camera, setting::eye,
+             setting::look);
     std::string names;
     for (size_t i = 0; i < cameras.size(); i++) {
         if (cameras[i].name == name || std::to_string(i) == name) return cameras[i];
         names += fmt::format("{}{}: {}", i ? ", " : "", i, cameras[i].name.empty() ? "(no name)" : cameras[i].name);
     }
-    fail("the scene '{}' has no camera '{}': there is {} (--camera)", scene.name, name, names);
+    fail("the scene '{}' has no camera '{}': there is {} ({})", scene.name, name, names, setting::camera);
 }
 
 /// `cameras`: of the scene, where they are now.
@@ -64,14 +59,14 @@ Camera choose_camera(const PictureArguments& a, const Scene& scene, const std::v
 }
 
 /// --material: what a file without materials of its own is good for.
-void override_material(Scene& scene, const std::string& name, const Box& box) {
+void override_material(Scene& scene, MaterialOverride chosen, const Box& box) {
     Material material;
-    material.name = name;
-    if (name == "mirror") {
+    material.name = name_of(chosen);
+    if (chosen == MaterialOverride::mirror) {
         material.base_color = glm::vec3(0.93f, 0.92f, 0.90f);
         material.metallic = 1;
         material.roughness = 0;
-    } else if (name == "glass") {
+    } else if (chosen == MaterialOverride::glass) {
         material.roughness = 0;
         material.transmission = 1;
         material.thickness = 1;
@@ -122,50 +117,34 @@ std::string choose_animation(const PictureArguments& a, const Scene& scene) {
 
 }  // namespace
 
-void check_ranges(const PictureArguments& a) {
-    const auto finite = [](const std::optional<glm::vec3>& vector, const char* option) {
-        if (vector && !(std::isfinite(vector->x) && std::isfinite(vector->y) && std::isfinite(vector->z)))
-            fail("{} must be three finite numbers", option);
-    };
-    if (a.time && !(*a.time >= 0 && *a.time <= 1e6))
-        fail("a moment of {} seconds is out of range: choose 0 to 1000000 (--time)", *a.time);
-    finite(a.eye, "--eye");
-    finite(a.look, "--look");
-    finite(a.up, "--up");
-    finite(a.background, "--background");
-    if (a.background && glm::any(glm::lessThan(*a.background, glm::vec3(0))))
-        fail("a background cannot be darker than black: choose three numbers from 0 up (--background)");
-    if (a.fov && !(*a.fov > 0 && *a.fov < 180))
-        fail("a field of view of {} degrees is impossible: choose one between 0 and 180 (--fov)", *a.fov);
-    if (a.size.x == 0 || a.size.y == 0)
-        fail("a picture of {}x{} pixels is empty: choose at least 1x1 (--size)", a.size.x, a.size.y);
-    if (!(std::abs(a.exposure) <= 64))
-        fail("an exposure of {} stops is out of range: choose -64 to 64 (--exposure)", a.exposure);
-    if (a.bounces > 16) fail("{} bounces are too many: choose 0 to 16 (--bounces)", a.bounces);
-    if (a.spp < 1 || a.spp > 65536) fail("{} samples per pixel are out of range: choose 1 to 65536 (--spp)", a.spp);
-    check_repeat(a.repeat);
+void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment) {
+    const size_t count = geometry.triangles.size();
+    if (geometry.zero_area == count && !is_moment)
+        fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
+    for (const std::string& text : scene.notes) print_note(text);
+    if (geometry.zero_area > 0)
+        print_note(fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
+    for (const std::string& extension : scene.extensions_unsupported)
+        print_note(fmt::format("the extension {} has no effect in this version", extension));
 }
 
-void choose_hit(RenderSettings& settings, const std::string& hit) {
-    settings.hit_auto = hit == "auto";
-    settings.cubes.hit = named(hit, {HitTest::exact, HitTest::planar, HitTest::tolerance});
+void choose_hit(RenderSettings& settings, std::optional<HitTest> hit) {
+    settings.hit_auto = !hit;
+    settings.cubes.hit = hit.value_or(HitTest::exact);
 }
 
 void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
     CubeLayout& layout = settings.cubes.layout;
     settings.cubes.tolerance = float(tracing.tolerance);
-    layout.traversal = named(tracing.traversal, {Traversal::voxel, Traversal::two_level, Traversal::mipmap});
+    layout.traversal = tracing.traversal;
     layout.block = tracing.block;
-    layout.batch = named(tracing.batch, {Batch::none, Batch::layers, Batch::rays});
+    layout.batch = tracing.batch;
     layout.half_depth = tracing.depth == 16;
-    layout.builder = named(tracing.builder, {BuilderKind::compute, BuilderKind::abuffer, BuilderKind::peel});
-    layout.routing = named(tracing.routing, {Routing::geometry, Routing::draws});
+    layout.builder = tracing.builder.value_or(BuilderKind::compute);
+    layout.routing = tracing.routing;
 }
 
 RenderSettings settings_of(const PictureArguments& a) {
-    const auto has = [&](const char* effect) {
-        return std::find(a.effects.begin(), a.effects.end(), effect) != a.effects.end();
-    };
     RenderSettings settings;
     settings.width = a.size.x;
     settings.height = a.size.y;
@@ -176,35 +155,33 @@ RenderSettings settings_of(const PictureArguments& a) {
     settings.spp = a.spp;
     settings.repeat = a.repeat;
     settings.rebuild = a.rebuild;
-    settings.visibility = a.visibility == "compute"  ? Visibility::compute
-                          : a.visibility == "raster" ? Visibility::raster
-                                                     : Visibility::automatic;
+    settings.visibility = a.visibility;
     settings.exposure = a.exposure;
-    settings.tonemap = a.tonemap == "none" ? Tonemap::none : a.tonemap == "aces" ? Tonemap::aces : Tonemap::neutral;
-    settings.reflection = has("reflection");
-    settings.refraction = has("refraction");
-    settings.shadow = has("shadow");
-    settings.ambient = has("ambient");
+    settings.tonemap = a.tonemap;
+    settings.reflection = a.effects.has(Effect::reflection);
+    settings.refraction = a.effects.has(Effect::refraction);
+    settings.shadow = a.effects.has(Effect::shadow);
+    settings.ambient = a.effects.has(Effect::ambient);
     return settings;
 }
 
 static bool wants_costs(const RenderArguments& a) {
-    return std::any_of(a.aovs.begin(), a.aovs.end(), [](const std::string& name) { return cost_field(name); });
+    return std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return cost_field(aov); });
 }
 
 RenderSettings settings_of(const RenderArguments& a) {
     RenderSettings settings = settings_of(static_cast<const PictureArguments&>(a));
     settings.counters = a.counters || wants_costs(a);
-    settings.aovs =
-        std::any_of(a.aovs.begin(), a.aovs.end(), [](const std::string& name) { return !cost_field(name); });
-    settings.ray_setup = wants_ray_setup(a.aovs);
+    settings.aovs = std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return !cost_field(aov); });
+    settings.ray_setup = std::any_of(a.aovs.begin(), a.aovs.end(), is_ray_setup);
     return settings;
 }
 
 void check_counters(const RenderArguments& a) {
     const char* option = a.counters ? "--counters" : wants_costs(a) ? "--aov cost_..." : nullptr;
-    if (option && a.tracing.tracer != "ldc")
-        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none", option, a.tracing.tracer);
+    if (option && a.tracing.tracer != Tracer::ldc)
+        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none", option,
+             name_of(a.tracing.tracer));
     if (a.counters && a.stats.empty()) fail("what --counters counts goes into the stats: name a file (--stats)");
 }
 
@@ -235,7 +212,7 @@ PreparedScene prepare_scene(const PictureArguments& a) {
     if (!scene.animation.empty()) complete_targets(scene.scene);
     scene.framed =
         scene.animation.empty() ? bounds(scene.scene, at_rest(scene.scene)) : bounds_over(scene.scene, scene.animation);
-    if (!a.material.empty()) override_material(scene.scene, a.material, scene.framed);
+    if (a.material) override_material(scene.scene, *a.material, scene.framed);
     scene.bounds = a.floor ? add_floor(scene.scene, scene.framed) : scene.framed;
     if (scene.animation.empty())
         scene.moment = at_rest(scene.scene);

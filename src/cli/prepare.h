@@ -1,8 +1,9 @@
 // From picture arguments to what every tracer renders: scene, triangles, camera, light.
 #pragma once
 
-#include "cli/program.h"
+#include "cli/arguments.h"
 #include "motion/simulation.h"
+#include "render/renderer.h"
 #include "scene/environment.h"
 
 namespace peelray {
@@ -33,13 +34,15 @@ struct PreparedScene {
     bool simulated_ = false;  ///< the moment has been
 };
 
-/// Throws Error for values that are well-formed but make no sense.
-void check_ranges(const PictureArguments& arguments);
+/// The scene's triangles. Tells on standard error what of the scene is left out; throws Error if nothing can be hit,
+/// unless that is but one moment of an animation.
+void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment = false);
+
 /// Settings for a builder, a traversal and what belongs to them.
 void choose_tracing(RenderSettings& settings, const TracingArguments& tracing);
 
-/// Settings for a hit test by its name.
-void choose_hit(RenderSettings& settings, const std::string& hit);
+/// Settings for a hit test; none: chosen by the number of triangles.
+void choose_hit(RenderSettings& settings, std::optional<HitTest> hit);
 /// The settings without the camera and the tracer.
 RenderSettings settings_of(const PictureArguments& arguments);
 /// The same with what goes into other files than the picture.

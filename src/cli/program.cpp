@@ -3,15 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 
 #include "base/error.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/options.h"
-#include "image/image.h"
-#include "ldc/cubes.h"
-#include "scene/scene.h"
+#include "cli/version.h"
 
 namespace peelray {
 namespace {
@@ -34,67 +33,6 @@ std::string describe(const CLI::ParseError& error, const CLI::App& program) {
 }
 
 }  // namespace
-
-void TracingArguments::check() const {
-    if (ldc && (*ldc < 16 || *ldc > 2048))
-        fail("an LDI resolution of {} is out of range: choose 16 to 2048, or auto (--ldc)", *ldc);
-    if (!(tolerance > 0) || !std::isfinite(tolerance))
-        fail("a tolerance of {} is impossible: choose a distance above 0 (--tolerance)", tolerance);
-    check_block(block);
-    if (builder == "peel" && hit == "exact") check_captures(BuilderKind::peel, Sampling::conservative);
-    if (batch != "none" && traversal == "voxel")
-        fail(
-            "--traversal voxel takes one sample and one ray at a time: use --batch {} with --traversal two-level or "
-            "mipmap",
-            batch);
-    if (depth != 16 && depth != 32) fail("a depth of {} bits is not supported: choose 16 or 32 (--depth)", depth);
-    if (depth == 16 && traversal == "voxel")
-        fail("--traversal voxel has a depth format of its own: use --depth 16 with --traversal two-level or mipmap");
-    if (depth == 16 && hit != "planar" && hit != "tolerance" && !(hit == "auto" && builder == "peel"))
-        fail("depths of 16 bits are too coarse for --hit {}: use --depth 16 with --hit tolerance or planar", hit);
-}
-
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-    return text;
-}
-
-void print_note(const std::string& text) {
-    fmt::print(stderr, "peelray: note: {}\n", one_line(text));
-}
-
-void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment) {
-    const size_t count = geometry.triangles.size();
-    if (geometry.zero_area == count && !is_moment)
-        fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
-    for (const std::string& text : scene.notes) print_note(text);
-    if (geometry.zero_area > 0)
-        print_note(fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
-    for (const std::string& extension : scene.extensions_unsupported)
-        print_note(fmt::format("the extension {} has no effect in this version", extension));
-}
-
-void check_repeat(uint32_t repeat) {
-    if (repeat < 1 || repeat > 10000) fail("{} repetitions are out of range: choose 1 to 10000 (--repeat)", repeat);
-}
-
-void check_outputs(const std::vector<std::filesystem::path>& outputs,
-                   const std::vector<std::filesystem::path>& inputs) {
-    std::error_code error;
-    const auto whole = [&](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(path, error);
-    };
-    for (size_t i = 0; i < outputs.size(); i++) {
-        check_writable(outputs[i]);
-        for (size_t k = 0; k < i; k++)
-            if (whole(outputs[k]) == whole(outputs[i]))
-                fail("{} would be written twice: give each output a name of its own", outputs[i].string());
-        for (const auto& input : inputs)
-            if (!input.empty() && whole(input) == whole(outputs[i]))
-                fail("{} is an input and would be overwritten: name another output", input.string());
-    }
-}
 
 int run_program(int argc, const char* const* argv) {
     CLI::App program{
@@ -137,20 +75,30 @@ int run_program(int argc, const char* const* argv) {
         return 2;
     }
     try {
-        if (program.got_subcommand("render")) run_render(render);
+        if (program.got_subcommand("render")) {
+            check_limits(options_of(render));
+            run_render(render);
+        }
         if (program.got_subcommand("compare")) {
-            compare.given = given_options(compare_options);
+            check_limits(options_of(compare));
+            compare.given = given_options(compare_options, compare);
             run_compare(compare);
         }
-        if (program.got_subcommand("trace")) run_trace(trace);
-        if (program.got_subcommand("bench")) run_bench(bench);
+        if (program.got_subcommand("trace")) {
+            check_limits(options_of(trace));
+            run_trace(trace);
+        }
+        if (program.got_subcommand("bench")) {
+            check_limits(options_of(bench));
+            run_bench(bench);
+        }
         if (program.got_subcommand("info")) run_info(info_scene);
         if (program.got_subcommand("devices")) run_devices();
         if (view->parsed())
             fail("'view' is not built into this version: there are render, compare, trace, bench, info and devices");
         if (std::fflush(stdout) != 0) fail("cannot write to the standard output: {}", std::strerror(errno));
     } catch (const Error& error) {
-        fmt::print(stderr, "peelray: {}\n", one_line(error.line("--")));
+        fmt::print(stderr, "peelray: {}\n", one_line(message_of(error)));
         return 1;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "peelray: out of memory: the scene or picture is too large for this machine\n");

@@ -3,11 +3,14 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/outputs.h"
 #include "cli/picture_files.h"
 #include "cli/picture_maker.h"
 #include "cli/sequence.h"
 #include "cli/stats_json.h"
-#include "cli/values.h"
+#include "settings/aovs.h"
 
 namespace peelray {
 namespace {
@@ -49,17 +52,16 @@ void report(const RenderArguments& a, const MadePicture& made, size_t triangles,
 void run_render(const RenderArguments& a) {
     if (a.is_sequence()) return run_sequence(a);
     const auto start = std::chrono::steady_clock::now();
-    a.tracing.check();
-    check_ranges(a);
+    check(a);
     check_single(a);
     check_counters(a);
     check_picture_name(a.output);
-    if (a.tracing.tracer == "reference" && a.repeat > 1)
+    if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
     const RenderSettings settings = settings_of(a);
     std::vector<fs::path> outputs = {a.output};
-    for (const std::string& name : a.aovs)
-        for (const fs::path& path : aov_paths(a.output, name)) outputs.push_back(path);
+    for (const Aov aov : a.aovs)
+        for (const fs::path& path : aov_paths(a.output, aov)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
@@ -67,9 +69,9 @@ void run_render(const RenderArguments& a) {
     watch_interrupts();
     const MadePicture made = PictureMaker(scene, a).make(a.tracing.tracer, settings);
     write_picture(made.picture, a.aovs, a.output);
-    for (const std::string& name : a.aovs)
-        if (const RayCostField* field = cost_field(name))
-            print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, name).string(),
+    for (const Aov aov : a.aovs)
+        if (const RayCostField* field = cost_field(aov))
+            print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, aov).string(),
                                    largest_of(made.picture.aovs.costs, *field)));
     if (!a.stats.empty()) write_json(a.stats, picture_json(made.stats));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -4,11 +4,13 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "cli/commands.h"
 #include "cli/frame_pattern.h"
 #include "cli/manifest.h"
+#include "cli/messages.h"
+#include "cli/outputs.h"
 #include "cli/picture_files.h"
 #include "cli/stats_json.h"
-#include "cli/values.h"
 #include "cli/video.h"
 #include "image/image.h"
 
@@ -160,8 +162,8 @@ void check_files(const RenderArguments& a, const FramePattern& pattern, const Se
     if (is_frame(a.stats)) fail("{} would be written twice: give each output a name of its own", a.stats.string());
     const fs::path first = pattern.file(sequence.frames.first);
     std::vector<fs::path> outputs = {first, manifest_path(a.output)};
-    for (const std::string& kind : a.aovs)
-        for (const fs::path& path : aov_paths(first, kind)) outputs.push_back(path);
+    for (const Aov aov : a.aovs)
+        for (const fs::path& path : aov_paths(first, aov)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, inputs);
 }
@@ -176,8 +178,8 @@ class Finished {
         const fs::path file = pattern_.file(frame);
         const auto time = fs::last_write_time(file, error_);
         if (error_) return false;
-        const bool whole = std::all_of(aovs_.begin(), aovs_.end(), [&](const std::string& kind) {
-            const std::vector<fs::path> paths = aov_paths(file, kind);
+        const bool whole = std::all_of(aovs_.begin(), aovs_.end(), [&](Aov aov) {
+            const std::vector<fs::path> paths = aov_paths(file, aov);
             return std::all_of(paths.begin(), paths.end(),
                                [&](const fs::path& path) { return fs::exists(path, error_); });
         });
@@ -190,7 +192,7 @@ class Finished {
 
   private:
     std::error_code error_;
-    const std::vector<std::string>& aovs_;
+    const std::vector<Aov>& aovs_;
     const FramePattern& pattern_;
     fs::file_time_type since_;
 };
@@ -275,8 +277,7 @@ void render_video(const RenderArguments& a, const Sequence& sequence) {
 }  // namespace
 
 void run_sequence(const RenderArguments& a) {
-    a.tracing.check();
-    check_ranges(a);
+    check(a);
     check_counters(a);
     const Sequence sequence = plan_sequence(a);
     if (is_video(a.output)) return render_video(a, sequence);

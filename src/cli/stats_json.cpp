@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "cli/program.h"
+#include "cli/version.h"
 #include "image/image.h"
 
 namespace peelray {
@@ -160,20 +160,6 @@ static Json structures_json(const Structures::Stats& s, StructureUpdate update) 
             {"build_scratch_bytes", s.scratch_bytes},
             {"kept_bytes", s.kept_bytes},
             {"kept_bytes_before_compaction", s.loose_bytes}};
-}
-
-static const char* name_of(Tracer tracer) {
-    switch (tracer) {
-        case Tracer::ldc:
-            return "ldc";
-        case Tracer::khr:
-            return "khr";
-        case Tracer::cubemap:
-            return "cubemap";
-        case Tracer::none:
-            return "none";
-    }
-    return "";
 }
 
 Json cubes_json(const PictureStats& stats) {

@@ -3,6 +3,9 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/outputs.h"
 #include "cli/prepare.h"
 #include "cli/stats_json.h"
 #include "image/image.h"
@@ -102,10 +105,9 @@ TraceStats trace_stats(Device& device, const Geometry& geometry, const RayScene&
 }  // namespace
 
 void run_trace(const TraceArguments& a) {
-    a.tracing.check();
-    if (a.tracing.tracer != "ldc" && a.tracing.tracer != "khr")
-        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", a.tracing.tracer);
-    check_repeat(a.repeat);
+    check(a.tracing);
+    if (a.tracing.tracer != Tracer::ldc && a.tracing.tracer != Tracer::khr)
+        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", name_of(a.tracing.tracer));
     std::vector<std::filesystem::path> outputs = {a.hits};
     for (const auto& more : {a.stats, a.counters})
         if (!more.empty()) outputs.push_back(more);
@@ -120,7 +122,7 @@ void run_trace(const TraceArguments& a) {
     settings.cubes.ldc = a.tracing.ldc.value_or(0);
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
-    settings.tracer = a.tracing.tracer == "khr" ? Tracer::khr : Tracer::ldc;
+    settings.tracer = a.tracing.tracer;
     settings.structures = StructureUpdate::keep;
 
     Device device({a.device.device, a.device.validate});

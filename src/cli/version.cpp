@@ -1,4 +1,4 @@
-#include "cli/program.h"
+#include "cli/version.h"
 
 namespace peelray {
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "ldc/ldc_grid.h"
+#include "settings/limits.h"
 
 namespace peelray {
 namespace {
@@ -23,49 +24,8 @@ glm::uvec3 ordered_bits(const glm::vec3& p) {
 
 }  // namespace
 
-const char* name_of(Traversal traversal) {
-    switch (traversal) {
-        case Traversal::voxel:
-            return "voxel";
-        case Traversal::two_level:
-            return "two-level";
-        case Traversal::mipmap:
-            return "mipmap";
-    }
-    return "";
-}
-
-const char* name_of(BuilderKind builder) {
-    switch (builder) {
-        case BuilderKind::compute:
-            return "compute";
-        case BuilderKind::abuffer:
-            return "abuffer";
-        case BuilderKind::peel:
-            return "peel";
-    }
-    return "";
-}
-
-const char* name_of(Routing routing) {
-    return routing == Routing::draws ? "draws" : "geometry";
-}
-
-const char* name_of(Batch batch) {
-    switch (batch) {
-        case Batch::none:
-            return "none";
-        case Batch::layers:
-            return "layers";
-        case Batch::rays:
-            return "rays";
-    }
-    return "";
-}
-
 uint32_t round_resolution(uint32_t resolution) {
-    if (resolution < 16 || resolution > 2048)
-        fail("the LDI resolution {} is out of range: choose 16 to 2048 ({})", resolution, setting::ldc);
+    check_limits(kResolutionLimits, setting::ldc, resolution);
     return (resolution + 15) / 16 * 16;
 }
 
@@ -88,16 +48,7 @@ uint64_t most_exact_triangles(const Device& device) {
 }
 
 void check_captures(BuilderKind builder, Sampling sampling) {
-    if (builder == BuilderKind::peel && sampling == Sampling::conservative)
-        fail(
-            "{} peel captures pixel centres, not all that a triangle touches: use {} planar or tolerance, or {} "
-            "abuffer or compute",
-            setting::builder, setting::hit, setting::builder);
-}
-
-void check_block(const glm::uvec2& block) {
-    if (block.x < 2 || block.y < 2 || block.x > 32 || block.y > 32)
-        fail("a block of {}x{} pixels is out of range: choose 2 to 32 a side ({})", block.x, block.y, setting::block);
+    if (sampling == Sampling::conservative) check_captures(builder, HitTest::exact);
 }
 
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution) {
@@ -107,7 +58,7 @@ CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t reso
 Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, const CubeLayout& layout)
     : device_(device), bodies_(std::move(bodies)), sampling_(sampling), layout_(layout) {
     assert(!bodies_.empty());
-    check_block(layout.block);
+    check_limits(kBlockLimits, setting::block, layout.block);
     const MemoryPart part(device, "cubes");
     Commands commands(device);
     std::vector<LdcBody> table;

@@ -10,6 +10,7 @@
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
 #include "ldc/base_color.h"
+#include "settings/choices.h"
 
 namespace peelray {
 
@@ -50,44 +51,11 @@ enum class Sampling : uint8_t {
     centre = LDC_CENTRE,  ///< pixel centres, each triangle in one LDI: for `tolerance` hits (the paper, section 1.2.1)
 };
 
-/// How rays walk through a cube, which decides the order of its samples.
-enum class Traversal : uint8_t {
-    voxel = PEELRAY_VOXELS,         ///< by voxel: all three LDIs at once, front to back
-    two_level = PEELRAY_TWO_LEVEL,  ///< by pixel: one LDI after the other, in blocks of pixels (the paper, section 1.4)
-    mipmap = PEELRAY_MIPMAP,        ///< by pixel: the same over a full min/max pyramid
-};
-
-/// Who rasterises: all make the same cube.
-enum class BuilderKind : uint8_t {
-    compute,  ///< compute shaders
-    abuffer,  ///< the graphics pipeline, one pass: fragments append themselves
-    peel,     ///< the graphics pipeline, a pass per layer: depth peeling (the paper, section 1.2)
-};
-
-/// How a triangle gets into the LDI that its normal picks, in the graphics pipeline.
-enum class Routing : uint8_t {
-    geometry,  ///< a geometry shader sends it there: one submission of the geometry for all three (the paper)
-    draws,     ///< each LDI is drawn on its own; vertices of triangles that are not its own are thrown away
-};
-
-/// What two_level and mipmap do at a time (the paper, section 4).
-enum class Batch : uint8_t {
-    none,    ///< one sample, one ray
-    layers,  ///< four samples of a pixel
-    rays,    ///< four rays a thread: `peelray trace` and the bounces of a picture, not its shadow rays
-};
-
-/// As the command line calls them.
-const char* name_of(Traversal traversal);
-const char* name_of(BuilderKind builder);
-const char* name_of(Routing routing);
-const char* name_of(Batch batch);
+static_assert(unsigned(Traversal::voxel) == PEELRAY_VOXELS && unsigned(Traversal::two_level) == PEELRAY_TWO_LEVEL &&
+              unsigned(Traversal::mipmap) == PEELRAY_MIPMAP);
 
 /// Throws Error with what would work instead unless this builder captures all that this sampling asks for.
 void check_captures(BuilderKind builder, Sampling sampling);
-
-/// Throws Error unless both sides are from 2 to 32.
-void check_block(const glm::uvec2& block);
 
 /// How cubes are built and stored.
 struct CubeLayout {

@@ -18,18 +18,6 @@ std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, s
     return bindings;
 }
 
-const char* name_of(HitTest test) {
-    switch (test) {
-        case HitTest::exact:
-            return "exact";
-        case HitTest::planar:
-            return "planar";
-        case HitTest::tolerance:
-            return "tolerance";
-    }
-    return "";
-}
-
 /// Those constants that the tracing of four rays by a thread has, too.
 static Constants walk_constants(const TracedScene& scene, HitTest test, bool counting) {
     return {{"hit_test", uint32_t(test)},

@@ -8,14 +8,8 @@
 
 namespace peelray {
 
-enum class HitTest : uint8_t {
-    exact = PEELRAY_EXACT,          ///< the triangles themselves
-    planar = PEELRAY_PLANAR,        ///< the samples' planes, each inside its footprint
-    tolerance = PEELRAY_TOLERANCE,  ///< the samples' depths, within a distance (the paper, section 3)
-};
-
-/// As the command line calls them.
-const char* name_of(HitTest test);
+static_assert(unsigned(HitTest::exact) == PEELRAY_EXACT && unsigned(HitTest::planar) == PEELRAY_PLANAR &&
+              unsigned(HitTest::tolerance) == PEELRAY_TOLERANCE);
 
 /// What rays are traced in: all of a scene's cubes, placed in the world.
 struct TracedScene {

@@ -13,6 +13,7 @@
 #include "reference/optics.h"
 #include "reference/shader.h"
 #include "scene/encoding.h"
+#include "settings/limits.h"
 
 namespace peelray {
 namespace {
@@ -34,8 +35,8 @@ void check_settings(const PictureSettings& s) {
     if (s.width < 1 || s.height < 1 || s.width > 65536 || s.height > 65536)
         fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 ({})", s.width, s.height,
              setting::size);
-    if (s.bounces > 16) fail("{} bounces are too many: choose 0 to 16 ({})", s.bounces, setting::bounces);
-    if (s.spp < 1) fail("a picture needs at least one sample per pixel ({})", setting::spp);
+    check_limits(kBounceLimits, setting::bounces, s.bounces);
+    check_limits(kSampleLimits, setting::spp, s.spp);
 }
 
 Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x, uint32_t y, const glm::vec2& sample) {

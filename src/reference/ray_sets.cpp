@@ -139,11 +139,6 @@ RayKind kind_of(size_t part) {
 
 }  // namespace
 
-const char* name_of(RayKind kind) {
-    constexpr const char* names[] = {"primary", "mirror", "refraction", "shadow", "ambient", "diffuse"};
-    return names[size_t(kind)];
-}
-
 StartedRay leaving_ray(const SurfaceRay& ray, float offset) {
     if (ray.triangle == ~0u) return {ray.point, 0, ray.direction, ray.reach};
     const float slope = glm::dot(ray.direction, ray.normal);

@@ -8,22 +8,12 @@
 
 #include "reference/oracle.h"
 #include "scene/picture.h"
+#include "settings/choices.h"
 
 namespace peelray {
 
-/// Kinds of rays, each a set of its own.
-enum class RayKind : uint8_t {
-    primary,     ///< from the camera, one per pixel
-    mirror,      ///< reflected where a primary ray hits, as if everything were a perfect mirror
-    refraction,  ///< up to four refractions or total reflections in a row, as if everything were glass of index 1.5
-    shadow,      ///< from where primary rays hit to the light, where the surface faces it
-    ambient,     ///< four a hit, cosine-distributed around the normal: is the sky seen?
-    diffuse,     ///< one a hit, cosine-distributed: what is seen?
-};
-inline constexpr size_t kRayKinds = 6;
+inline constexpr size_t kRayKinds = names_of(RayKind{}).size();
 
-/// As the command line calls them.
-const char* name_of(RayKind kind);
 /// Rays that only ask whether something is in the way.
 inline bool is_any_hit(RayKind kind) {
     return kind == RayKind::shadow || kind == RayKind::ambient;

@@ -14,13 +14,6 @@
 
 namespace peelray {
 
-/// Who finds what each pixel sees.
-enum class Visibility : uint8_t {
-    automatic,  ///< compute where the device can, but for software devices
-    compute,    ///< compute shaders, with the camera's rays
-    raster,     ///< the graphics pipeline
-};
-
 /// What a picture is to look like and how it is traced. Defaults are those of the command line.
 struct RenderSettings : PictureSettings, TracerChoice {
     bool hit_auto = true;  ///< choose cubes.hit by the number of triangles

@@ -3,16 +3,9 @@
 
 #include "khr/structures.h"
 #include "render/scene_cubes.h"
+#include "settings/choices.h"
 
 namespace peelray {
-
-/// Who answers for what a surface mirrors, lets through and has in its way to the light.
-enum class Tracer : uint8_t {
-    ldc,      ///< rays in the layered depth cube
-    khr,      ///< the rival: rays by the device's own ray tracing
-    cubemap,  ///< the baseline: cube maps of each object's surroundings and shadow maps
-    none,     ///< nobody: the environment is all that surfaces see, and no light is blocked
-};
 
 struct TracerChoice {
     Tracer tracer = Tracer::ldc;

@@ -9,10 +9,9 @@
 #include "base/ray_costs.h"
 #include "scene/box.h"
 #include "scene/scene.h"
+#include "settings/choices.h"
 
 namespace peelray {
-
-enum class Tonemap : uint8_t { none, aces, neutral };
 
 /// What a picture is to look like, whoever makes it. Defaults are those of the command line.
 struct PictureSettings {

@@ -1,0 +1,75 @@
+// What a user asks a command for: the settings of src/settings, and the files that go in and come out.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings/settings.h"
+
+namespace peelray {
+
+struct RenderArguments : PictureArguments {
+    std::filesystem::path output, stats;
+    std::vector<Aov> aovs;
+    bool counters = false;
+    SequenceArguments sequence;
+
+    bool is_sequence() const { return sequence.frames || sequence.turntable; }
+};
+
+/// An option as it was typed.
+struct GivenOption {
+    std::string name;
+    std::vector<std::string> words;  ///< its flag and, unless it is one that has none, its value
+};
+
+struct CompareArguments : PictureArguments {
+    std::filesystem::path output, json, strip, worst;
+    std::vector<Tracer> tracers = {Tracer::cubemap, Tracer::ldc, Tracer::reference};
+    std::vector<std::optional<HitTest>> hits = {std::nullopt};  ///< none: auto
+    std::vector<std::filesystem::path> pictures;
+    std::vector<GivenOption> given;  ///< of the picture's
+};
+
+struct TraceArguments {
+    std::string scene;
+    std::filesystem::path rays, hits, stats, counters;
+    bool any_hit = false;
+    uint32_t repeat = 1;
+    TracingArguments tracing;
+    DeviceArguments device;
+};
+
+/// Lists that are empty stand for the default, which `run_bench` fills in.
+struct BenchArguments {
+    bool paper = false, all = false, quick = false, auto_check = false;
+    std::vector<std::string> scenes;
+    std::vector<BuilderKind> builders;
+    std::vector<Traversal> traversals;
+    std::vector<HitTest> hits;
+    std::vector<RayKind> rays;
+    std::vector<std::optional<uint32_t>> ldc;      ///< none: auto
+    std::optional<std::vector<glm::uvec2>> sizes;  ///< of the series of picture sizes
+    glm::uvec2 block{8}, size{0};
+    std::optional<glm::uvec2> given_size;  ///< what `size` becomes, if given
+    Routing routing = Routing::geometry;
+    std::optional<double> tolerance;  ///< none: in proportion to the scene
+    uint32_t repeat = 0;
+    std::optional<uint32_t> given_repeat;
+    std::optional<std::filesystem::path> models;  ///< none: the folder "models", if there is one
+    std::filesystem::path output, markdown, plots;
+    DeviceArguments device;
+};
+
+/// All options of a command but the scene, in the order of its help.
+SettingList options_of(RenderArguments& arguments);
+SettingList options_of(CompareArguments& arguments);
+SettingList options_of(TraceArguments& arguments);
+SettingList options_of(BenchArguments& arguments);
+
+/// "exact", or "auto" for none.
+std::string name_of(const std::optional<HitTest>& hit);
+
+}  // namespace peelray

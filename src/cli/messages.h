@@ -1,0 +1,17 @@
+// What the program says on the terminal.
+#pragma once
+
+#include <string>
+
+#include "base/error.h"
+
+namespace peelray {
+
+/// Whatever a file's names brought along, as one line without terminal codes.
+std::string one_line(std::string text);
+/// The line of an Error, with settings as their flags.
+std::string message_of(const Error& error);
+/// A line on standard error that is no complaint. Settings in it, as fmt prints a Setting, become their flags.
+void print_note(const std::string& text);
+
+}  // namespace peelray

@@ -1,0 +1,25 @@
+#include "cli/outputs.h"
+
+#include "base/error.h"
+#include "image/image.h"
+
+namespace peelray {
+
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   const std::vector<std::filesystem::path>& inputs) {
+    std::error_code error;
+    const auto whole = [&](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(path, error);
+    };
+    for (size_t i = 0; i < outputs.size(); i++) {
+        check_writable(outputs[i]);
+        for (size_t k = 0; k < i; k++)
+            if (whole(outputs[k]) == whole(outputs[i]))
+                fail("{} would be written twice: give each output a name of its own", outputs[i].string());
+        for (const auto& input : inputs)
+            if (!input.empty() && whole(input) == whole(outputs[i]))
+                fail("{} is an input and would be overwritten: name another output", input.string());
+    }
+}
+
+}  // namespace peelray

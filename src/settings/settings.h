@@ -1,0 +1,297 @@
+// The table of settings: what a picture shows and how it is made. A setting is a member here and, beside it, its entry;
+// options, help, checks and the manifest of a sequence follow from the entry. docs/usage.md tells how they are used.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings/setting_list.h"
+
+namespace peelray {
+
+/// Where the camera stands, and when.
+struct ViewArguments {
+    std::optional<glm::vec3> eye, look, up;
+    std::optional<float> fov;  ///< degrees
+    std::string camera;
+    std::optional<double> time;  ///< seconds
+    std::string animation;
+};
+
+inline void add_view(SettingList& list, ViewArguments& a) {
+    const std::string group = "View", form = "X,Y,Z", expected = "three numbers X,Y,Z";
+    add_setting(list, a.eye,
+                {.name = "eye", .group = group, .help = "where the camera stands", .form = form, .expected = expected});
+    add_setting(list, a.look,
+                {.name = "look",
+                 .group = group,
+                 .help = "the point it looks at; default: the scene's centre",
+                 .form = form,
+                 .expected = expected});
+    add_setting(list, a.up,
+                {.name = "up",
+                 .group = group,
+                 .help = "its upward direction; default: 0,1,0",
+                 .form = form,
+                 .expected = expected});
+    add_setting(list, a.fov,
+                {.name = "fov",
+                 .group = group,
+                 .help = "vertical field of view; default: the camera's own, 40 where there is none",
+                 .form = "DEGREES",
+                 .limits = {.least = 0,
+                            .most = 180,
+                            .open = true,
+                            .fault = "a field of view of {} degrees is impossible",
+                            .choose = "one between 0 and 180"}});
+    add_setting(
+        list, a.camera,
+        {.name = "camera",
+         .group = group,
+         .help = "a camera of the scene, see 'peelray info SCENE'; default: the first, or the whole scene in view",
+         .form = "NAME|N"});
+    add_setting(
+        list, a.time,
+        {.name = "time",
+         .group = group,
+         .help = "moment of the animation; default: everything at rest",
+         .form = "SECONDS",
+         .limits = {
+             .least = 0, .most = 1e6, .fault = "a moment of {} seconds is out of range", .choose = "0 to 1000000"}});
+    add_setting(
+        list, a.animation,
+        {.name = "animation",
+         .group = group,
+         .help = "which one, see 'peelray info SCENE', or all at once; default: the first, with --time or --frames",
+         .form = "NAME|N|all"});
+}
+
+/// What lights the scene, and how bright the picture is.
+struct LightArguments {
+    std::string env;
+    bool sky = false;
+    std::optional<glm::vec3> background;
+    float exposure = 0;  ///< stops
+    Tonemap tonemap = Tonemap::neutral;
+};
+
+inline void add_light(SettingList& list, LightArguments& a) {
+    const std::string group = "Light";
+    add_setting(
+        list, a.env,
+        {.name = "env", .group = group, .help = "environment map, equirectangular .hdr or .exr", .form = "FILE"});
+    add_setting(list, a.sky,
+                {.name = "sky",
+                 .group = group,
+                 .help = "procedural sky with a sun; the default where the scene has no lights",
+                 .excludes = {"env"}});
+    add_setting(list, a.background,
+                {.name = "background",
+                 .group = group,
+                 .help = "one colour from everywhere, linear, from 0 up",
+                 .form = "R,G,B",
+                 .expected = "three numbers R,G,B",
+                 .limits = {.least = 0,
+                            .fault = "a background cannot be darker than black",
+                            .choose = "three numbers from 0 up"},
+                 .excludes = {"env", "sky"}});
+    add_setting(
+        list, a.exposure,
+        {.name = "exposure",
+         .group = group,
+         .help = "of a .png, in stops: each doubles the brightness",
+         .form = "STOPS",
+         .limits = {
+             .least = -64, .most = 64, .fault = "an exposure of {} stops is out of range", .choose = "-64 to 64"}});
+    add_setting(list, a.tonemap, {.name = "tonemap", .group = group, .help = "tone curve of a .png"});
+}
+
+/// How rays are traced in the layered depth cube.
+struct TracingArguments {
+    Tracer tracer = Tracer::ldc;
+    std::optional<HitTest> hit;   ///< none: chosen by the number of triangles
+    std::optional<uint32_t> ldc;  ///< none: chosen for each part
+    double tolerance = 0.001;
+    std::optional<BuilderKind> builder;  ///< none: compute
+    Routing routing = Routing::geometry;
+    uint32_t depth = 32;  ///< bits
+    Batch batch = Batch::none;
+    Traversal traversal = Traversal::voxel;
+    glm::uvec2 block{8};
+};
+
+inline void add_hit(SettingList& list, TracingArguments& a) {
+    add_setting(
+        list, a.hit,
+        {.name = "hit",
+         .group = "Tracing",
+         .help = "exact: the triangles themselves; planar: the samples' planes, at a cost that does not depend on the "
+                 "number of triangles; tolerance: the samples' depths, within --tolerance, as in the paper; auto: "
+                 "exact up to a few million triangles (with --builder peel: planar)",
+         .none = "auto"});
+}
+
+inline void add_block(SettingList& list, glm::uvec2& block, SettingInfo info) {
+    info.name = "block";
+    info.form = "N|NxM";
+    info.expected = "a number of pixels such as 8 or 8x4";
+    info.preset = "8";
+    info.limits = kBlockLimits;
+    add_setting(list, block, std::move(info), parse_block,
+                [](const glm::uvec2& value) { return std::optional(print_text(value)); });
+}
+
+inline constexpr Limits kToleranceLimits{
+    .least = 0, .open = true, .fault = "a tolerance of {} is impossible", .choose = "a distance above 0"};
+
+inline void add_tracing(SettingList& list, TracingArguments& a) {
+    const std::string group = "Tracing";
+    add_setting(list, a.ldc,
+                {.name = "ldc",
+                 .group = group,
+                 .help = "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; "
+                         "smaller parts get fewer; auto: by the number of triangles of each",
+                 .form = "auto|N",
+                 .expected = "auto or a number from 16 to 2048",
+                 .none = "auto",
+                 .limits = kResolutionLimits});
+    add_setting(list, a.tolerance,
+                {.name = "tolerance",
+                 .group = group,
+                 .help = "distance of a hit of --hit tolerance, world units",
+                 .limits = kToleranceLimits});
+    add_setting(
+        list, a.builder,
+        {.name = "builder",
+         .group = group,
+         .help = "who rasterises the layered depth cubes: compute shaders; the graphics pipeline in one pass (abuffer) "
+                 "or a pass per layer (peel, as in the paper); auto: compute",
+         .none = "auto"});
+    add_setting(list, a.routing,
+                {.name = "routing",
+                 .group = group,
+                 .help = "how the graphics pipeline sends triangles to the three images: a geometry shader, or three "
+                         "draws"});
+    add_setting(list, a.depth,
+                {.name = "depth",
+                 .group = group,
+                 .help = "bits of the samples' depths of --traversal two-level and mipmap: 32, or 16 as in the paper",
+                 .form = "16|32",
+                 .limits = {.least = 16,
+                            .most = 32,
+                            .step = 16,
+                            .fault = "a depth of {} bits is not supported",
+                            .choose = "16 or 32"}});
+    add_setting(list, a.batch,
+                {.name = "batch",
+                 .group = group,
+                 .help = "for measuring: two-level and mipmap test four layers of a pixel, or trace four rays, at a "
+                         "time"});
+    add_setting(list, a.traversal,
+                {.name = "traversal",
+                 .group = group,
+                 .help = "how rays walk through a cube: all of it at once by voxels, or one image after the other over "
+                         "blocks of pixels (two-level, as in the paper) or a full pyramid (mipmap)"});
+    add_block(list, a.block, {.group = group, .help = "pixels per block of --traversal two-level, 2 to 32 a side"});
+}
+
+/// What is traced, and of what.
+struct EffectArguments {
+    ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
+    uint32_t bounces = 4, spp = 1;
+    std::optional<MaterialOverride> material;
+    bool floor = false;
+};
+
+/// A list out of the effects, or "none".
+std::optional<ChoiceSet<Effect>> parse_effects(const std::string& text);
+
+inline void add_effects(SettingList& list, EffectArguments& a) {
+    const std::string group = "Effects";
+    add_setting(list, a.effects,
+                {.name = "effects",
+                 .group = group,
+                 .help = "what is traced, a list out of reflection,refraction,shadow,ambient, or none",
+                 .form = "LIST",
+                 .expected = "a list out of reflection,refraction,shadow,ambient, or none"},
+                parse_effects, [](const ChoiceSet<Effect>& effects) {
+                    const std::string names = print_text(effects);
+                    return names.empty() ? std::nullopt : std::optional(names);
+                });
+    add_setting(list, a.bounces,
+                {.name = "bounces",
+                 .group = group,
+                 .help = "reflections and refractions in a row, 0 to 16",
+                 .limits = kBounceLimits});
+    add_setting(list, a.spp,
+                {.name = "spp",
+                 .group = group,
+                 .help = "samples per pixel: smooth edges and rough reflections",
+                 .limits = kSampleLimits});
+    add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this"});
+    add_setting(list, a.floor,
+                {.name = "floor", .group = group, .help = "put the scene on a floor that mirrors a little"});
+}
+
+/// Which device works.
+struct DeviceArguments {
+    std::string device;
+    bool validate = false;
+};
+
+inline void add_device(SettingList& list, DeviceArguments& a) {
+    const std::string group = "Device";
+    add_setting(list, a.device,
+                {.name = "device",
+                 .group = group,
+                 .help = "by number or part of its name, see 'peelray devices'; default: the fastest kind there is",
+                 .form = "N|NAME",
+                 .changes_picture = false});
+    add_setting(list, a.validate,
+                {.name = "validate",
+                 .group = group,
+                 .help = "run under the Vulkan validation layers; any message is an error",
+                 .changes_picture = false});
+}
+
+/// What a picture shows and how it is made.
+struct PictureArguments : ViewArguments, LightArguments, EffectArguments {
+    std::string scene;  ///< a file or builtin:NAME
+    glm::uvec2 size{1280, 1024};
+    TracingArguments tracing;
+    Visibility visibility = Visibility::automatic;
+    uint32_t repeat = 1;
+    bool rebuild = false;
+    DeviceArguments device;
+};
+
+inline constexpr Limits kRepeatLimits{
+    .least = 1, .most = 10000, .fault = "{} repetitions are out of range", .choose = "1 to 10000"};
+inline constexpr Limits kSizeLimits{.least = 1, .fault = "a picture of {} pixels is empty", .choose = "at least 1x1"};
+
+/// All but the scene. `one`: with the tracer and the hit test; without where several of them are compared.
+SettingList picture_settings(PictureArguments& a, bool one = true);
+
+/// Several pictures in a row.
+struct SequenceArguments {
+    std::optional<FrameRange> frames;
+    std::optional<double> fps;
+    std::optional<uint32_t> turntable;  ///< frames of a full circle
+    std::optional<Shard> shard;
+    bool resume = false;
+};
+
+inline constexpr uint32_t kMostFrames = 10'000'000;
+
+SettingList sequence_settings(SequenceArguments& a);
+
+/// The auxiliary pictures of --aov: a list, or "all": those of what is seen.
+std::optional<std::vector<Aov>> parse_aovs(const std::string& text);
+
+/// Throw Error for values that are well-formed but make no sense, alone or together.
+void check(const TracingArguments& arguments);
+void check(const PictureArguments& arguments);
+
+}  // namespace peelray
