@@ -86,7 +86,7 @@ SettingList options_of(RenderArguments& a) {
                 {.name = "counters",
                  .group = group,
                  .help = "count what rays cost, for the stats: cells stepped to, lists met, pixels, samples and "
-                         "triangles tested; times are then not to be trusted",
+                         "triangles tested; this slows rays down, so times mean nothing",
                  .changes_picture = false});
     return list;
 }
@@ -106,7 +106,7 @@ SettingList options_of(CompareArguments& a) {
     add_choices(list, a.tracers,
                 {.name = "tracers",
                  .group = group,
-                 .help = "who renders, a list out of cubemap,ldc,reference,none,khr",
+                 .help = "the tracers that render, a list out of cubemap,ldc,reference,none,khr",
                  .expected = "a list out of cubemap,ldc,reference,none,khr, each once",
                  .preset = "cubemap,ldc,reference"});
     add_list(list, a.hits,
@@ -136,8 +136,8 @@ SettingList options_of(CompareArguments& a) {
     add_file(list, a.worst,
              {.name = "worst",
               .group = group,
-              .help = "also write what surrounds each picture's worst pixel, magnified: the picture, the reference, "
-                      "the error",
+              .help = "also write the surroundings of each picture's worst pixel, magnified: the picture, the "
+                      "reference, the error",
               .form = "FILE.png"});
     return list;
 }
@@ -160,14 +160,14 @@ SettingList options_of(TraceArguments& a) {
     add_file(list, a.counters,
              {.name = "counters",
               .help = "also write what each ray cost: structured (n): steps, cells, pixels, samples, triangles, u4 "
-                      "each; times are then not to be trusted",
+                      "each; this slows rays down, so times mean nothing",
               .form = "FILE.npy"});
     add_setting(list, a.any_hit,
-                {.name = "any-hit", .help = "stop at any hit, not only at the nearest: for shadow rays"});
+                {.name = "any-hit", .help = "stop at any hit instead of looking for the nearest: for shadow rays"});
     add_file(list, a.stats, {.name = "stats", .help = "also write times and memory as JSON"});
     add_setting(list, a.repeat,
                 {.name = "repeat",
-                 .help = "for measuring: trace 2 or more times after a first one that warms up; times are medians",
+                 .help = "for measuring: trace 2 or more times after one that warms up; times are medians",
                  .limits = kRepeatLimits,
                  .changes_picture = false});
     add_setting(
@@ -231,7 +231,7 @@ void add_runs(SettingList& list, BenchArguments& a) {
                  .excludes = {"quick"}});
     add_setting(list, a.given_repeat,
                 {.name = "repeat",
-                 .help = "how often everything is measured, after some that warm up; times are medians",
+                 .help = "how often everything is measured, after some runs that warm up; times are medians",
                  .preset = "20",
                  .limits = kRepeatLimits,
                  .excludes = {"quick"}});
@@ -296,7 +296,7 @@ void add_ways(SettingList& list, BenchArguments& a) {
     add_setting(list, a.all,
                 {.name = "all",
                  .group = group,
-                 .help = "every combination; what cannot be done is left out, with the reason",
+                 .help = "every combination; those that cannot be done are left out, with the reason",
                  .needs = needs});
     add_block(list, a.block, {.group = group, .help = "pixels per block of two-level", .needs = needs});
     add_setting(list, a.routing,

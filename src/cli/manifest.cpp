@@ -132,8 +132,9 @@ void settle_manifest(const fs::path& path, const Json& now, bool shares_frames) 
     if (!fs::exists(path, error) && write_json_if_absent(path, now)) return;
     const std::string line = differences(read_manifest(path), now);
     if (!line.empty())
-        fail("the frames that are there were made otherwise: {} ({}); use the same, or remove that file to start anew",
-             line, path.string());
+        fail(
+            "the frames that are there were made differently: {} ({}); use the same, or remove that file to start anew",
+            line, path.string());
 }
 
 }  // namespace peelray

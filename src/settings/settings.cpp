@@ -17,19 +17,19 @@ void add_measuring(SettingList& list, PictureArguments& a) {
     add_setting(list, a.visibility,
                 {.name = "visibility",
                  .group = "Tracing",
-                 .help = "who finds what each pixel sees: compute shaders, or the graphics pipeline; auto: compute, "
-                         "where the device has 64-bit atomics and is no software"});
+                 .help = "what determines the surface that each pixel sees: compute shaders, or the graphics pipeline; "
+                         "auto: compute, if the device has 64-bit atomics and is not a software device"});
     add_setting(list, a.repeat,
                 {.name = "repeat",
                  .group = "More output",
-                 .help = "for measuring: 2 or more frames after a first one that warms up; times are medians",
+                 .help = "for measuring: render 2 or more frames after one that warms up; times are medians",
                  .limits = kRepeatLimits,
                  .changes_picture = false});
     add_setting(list, a.rebuild,
                 {.name = "rebuild",
                  .group = "More output",
-                 .help = "for measuring: every cube, or acceleration structure, anew in every frame, as if everything "
-                         "changed its shape"});
+                 .help = "for measuring: build every cube or acceleration structure anew in every frame, as if "
+                         "everything changed its shape"});
 }
 
 }  // namespace
@@ -95,8 +95,8 @@ SettingList sequence_settings(SequenceArguments& a) {
     add_setting(list, a.turntable,
                 {.name = "turntable",
                  .group = group,
-                 .help = "N frames in which the camera goes once round the vertical line through its look point; all "
-                         "else stands at --time or at rest, with --animation or --fps the animation runs",
+                 .help = "N frames in which the camera goes once around the vertical line through its look point; "
+                         "everything else stays at --time or at rest, but with --animation or --fps the animation runs",
                  .limits = {.least = 1,
                             .most = kMostFrames,
                             .fault = "a turntable of {} frames is out of range",
@@ -112,7 +112,7 @@ SettingList sequence_settings(SequenceArguments& a) {
     add_setting(list, a.resume,
                 {.name = "resume",
                  .group = group,
-                 .help = "go on with a run that ended early: leave the frames alone that it finished",
+                 .help = "continue a run that ended early: the frames that it finished are left alone",
                  .changes_picture = false});
     return list;
 }

@@ -162,13 +162,12 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .group = group,
                  .help = "distance of a hit of --hit tolerance, world units",
                  .limits = kToleranceLimits});
-    add_setting(
-        list, a.builder,
-        {.name = "builder",
-         .group = group,
-         .help = "who rasterises the layered depth cubes: compute shaders; the graphics pipeline in one pass (abuffer) "
-                 "or a pass per layer (peel, as in the paper); auto: compute",
-         .none = "auto"});
+    add_setting(list, a.builder,
+                {.name = "builder",
+                 .group = group,
+                 .help = "what rasterises the layered depth cubes: compute shaders, or the graphics pipeline in one "
+                         "pass (abuffer) or one pass per layer (peel, as in the paper); auto: compute",
+                 .none = "auto"});
     add_setting(list, a.routing,
                 {.name = "routing",
                  .group = group,
@@ -177,7 +176,7 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
     add_setting(list, a.depth,
                 {.name = "depth",
                  .group = group,
-                 .help = "bits of the samples' depths of --traversal two-level and mipmap: 32, or 16 as in the paper",
+                 .help = "bits of the samples' depths with --traversal two-level and mipmap: 32, or 16 as in the paper",
                  .form = "16|32",
                  .limits = {.least = 16,
                             .most = 32,
@@ -187,14 +186,14 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
     add_setting(list, a.batch,
                 {.name = "batch",
                  .group = group,
-                 .help = "for measuring: two-level and mipmap test four layers of a pixel, or trace four rays, at a "
-                         "time"});
+                 .help = "for measuring: two-level and mipmap test four layers of a pixel at a time, or trace four "
+                         "rays at a time"});
     add_setting(list, a.traversal,
                 {.name = "traversal",
                  .group = group,
                  .help = "how rays walk through a cube: all of it at once by voxels, or one image after the other over "
                          "blocks of pixels (two-level, as in the paper) or a full pyramid (mipmap)"});
-    add_block(list, a.block, {.group = group, .help = "pixels per block of --traversal two-level, 2 to 32 a side"});
+    add_block(list, a.block, {.group = group, .help = "pixels per block with --traversal two-level, 2 to 32 a side"});
 }
 
 /// What is traced, and of what.
@@ -230,9 +229,9 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                  .group = group,
                  .help = "samples per pixel: smooth edges and rough reflections",
                  .limits = kSampleLimits});
-    add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this"});
+    add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
-                {.name = "floor", .group = group, .help = "put the scene on a floor that mirrors a little"});
+                {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});
 }
 
 /// Which device works.
