@@ -11,6 +11,7 @@
 #include "render/structure_bodies.h"
 #include "render/time_table.h"
 #include "render/transforms.h"
+#include "settings/limits.h"
 
 namespace peelray {
 namespace {
@@ -136,9 +137,9 @@ void Renderer::Impl::check_settings() const {
             "smaller {}",
             settings.width, settings.height, double(bytes) / (1 << 20), device.info().name,
             double(device.limits().maxStorageBufferRange) / (1 << 20), setting::size);
-    if (settings.bounces >= QUEUE_LEVELS)
-        fail("{} bounces are too many: choose 0 to {} ({})", settings.bounces, QUEUE_LEVELS - 1, setting::bounces);
-    if (settings.spp < 1) fail("a picture needs at least one sample per pixel ({})", setting::spp);
+    static_assert(kBounceLimits.most == QUEUE_LEVELS - 1);
+    check_limits(kBounceLimits, setting::bounces, settings.bounces);
+    check_limits(kSampleLimits, setting::spp, settings.spp);
     if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
         fail("the device '{}' cannot find what pixels see by compute shaders{}: use {} raster", device.info().name,
              device.features.int64_atomics ? fmt::format(" among {} triangles", scene.drawn)
