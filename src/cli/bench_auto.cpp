@@ -9,9 +9,10 @@
 #include "cli/bench_scenes.h"
 #include "cli/messages.h"
 #include "cli/paper_table.h"
-#include "cli/prepare.h"
 #include "cli/stats_json.h"
 #include "cli/version.h"
+#include "workspace/posed_scene.h"
+#include "workspace/render_settings.h"
 
 namespace peelray {
 namespace {
@@ -54,8 +55,8 @@ class AutoCheck {
 
   private:
     void measure(const std::string& name, Progress& bar);
-    void measure(PreparedScene& scene, const PictureArguments& picture, Renderer& renderer, AutoRow& row);
-    void time(const PictureArguments& picture, const PreparedScene& scene, Renderer& renderer, Choice& choice);
+    void measure(const PosedScene& scene, const PictureArguments& picture, Renderer& renderer, AutoRow& row);
+    void time(const PictureArguments& picture, const PosedScene& scene, Renderer& renderer, Choice& choice);
     void add(const AutoRow& row, Progress& bar);
     void say(const std::string& text);
     void write(bool complete) const;
@@ -88,14 +89,13 @@ void AutoCheck::write(bool complete) const {
     if (!a_.markdown.empty()) write_text(a_.markdown, text_);
 }
 
-void AutoCheck::time(const PictureArguments& arguments, const PreparedScene& scene, Renderer& renderer,
-                     Choice& choice) {
+void AutoCheck::time(const PictureArguments& arguments, const PosedScene& scene, Renderer& renderer, Choice& choice) {
     PictureArguments picture = arguments;
     picture.tracing.hit = choice.hit;
     picture.tracing.ldc = choice.ldc;
-    RenderSettings settings = settings_of(picture);
-    settings.camera = scene.camera;
-    settings.bounds = scene.bounds;
+    RenderSettings settings = render_settings(picture);
+    settings.camera = scene.camera();
+    settings.bounds = scene.bounds();
     settings.repeat = a_.repeat + kWarmUpOfChoice + 1;
     settings.time_passes = false;
     probe_.warm_up();
@@ -107,7 +107,7 @@ void AutoCheck::time(const PictureArguments& arguments, const PreparedScene& sce
     choice.chosen = result.stats.hit;
 }
 
-void AutoCheck::measure(PreparedScene& scene, const PictureArguments& picture, Renderer& renderer, AutoRow& row) {
+void AutoCheck::measure(const PosedScene& scene, const PictureArguments& picture, Renderer& renderer, AutoRow& row) {
     time(picture, scene, renderer, row.automatic);
     for (const HitTest hit : a_.hits)
         for (const auto& ldc : a_.ldc) {
@@ -162,11 +162,9 @@ void AutoCheck::measure(const std::string& name, Progress& bar) {
     const BenchSceneChoice choice = choose_bench_scene(name, a_);
     AutoRow row{choice.name, choice.shown, "", choice.stands_in};
     try {
-        PreparedScene scene = prepare_scene(choice.picture);
-        row.triangles = scene.triangles;
-        Renderer renderer(device_, scene.scene, scene.moment,
-                          assemble(scene.scene, scene.moment, motion_of(scene.scene, scene.animation)),
-                          scene.environment);
+        PosedScene scene(choice.picture, print_note);
+        row.triangles = scene.triangles();
+        Renderer renderer(device_, scene.scene(), scene.moment(), scene.assembly_of_moment(), scene.environment());
         for (const bool rebuilt : {true, false}) {
             AutoRow each = row;
             each.rebuilt = rebuilt;

@@ -8,10 +8,11 @@
 #include "cli/bench.h"
 #include "cli/messages.h"
 #include "cli/paper_table.h"
-#include "cli/picture_maker.h"
 #include "cli/stats_json.h"
 #include "image/image.h"
 #include "motion/animation.h"
+#include "workspace/render_settings.h"
+#include "workspace/workspace.h"
 
 namespace peelray {
 namespace {
@@ -110,7 +111,7 @@ class BenchScene {
     /// Throws Error where the scene cannot be had.
     BenchScene(const PaperScene& scene, const BenchArguments& a, const std::optional<fs::path>& file);
 
-    uint64_t triangles() const { return scene_->triangles; }
+    uint64_t triangles() const { return workspace_->scene().triangles(); }
     double tolerance() const { return tolerance_; }
     /// Fills in what was measured. Throws Error where that cannot be done, Interrupted.
     void measure(BenchRow& row, const std::function<void(double)>& progress);
@@ -125,8 +126,7 @@ class BenchScene {
                      const std::function<void(double)>& progress);
 
     PictureArguments arguments_;
-    std::optional<PreparedScene> scene_;
-    std::unique_ptr<PictureMaker> maker_;
+    std::optional<Workspace> workspace_;
     bool rendered_ = false;  ///< something has been rendered since the last look
     double tolerance_ = 0, duration_ = 0;
     float object_side_ = 0;  ///< longest, of what stands on the floor
@@ -146,9 +146,10 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const s
     if (file) p.material = scene.material;
     p.animation = file ? scene.animation : scene.stand_in_animation;
     if (!p.animation.empty()) p.time = 0;
-    scene_ = prepare_scene(p);
-    if (p.time) duration_ = find_animations(scene_->scene, p.animation).front()->duration;
-    object_side_ = longest_side(file ? scene_->framed : largest_object(scene_->geometry()));
+    workspace_.emplace(p, print_note);
+    PosedScene& opened = workspace_->scene();
+    if (p.time) duration_ = find_animations(opened.scene(), p.animation).front()->duration;
+    object_side_ = longest_side(file ? opened.framed() : largest_object(opened.geometry()));
     // Meshes come in metres, inches or what their scanner had: the paper's 0.001 is taken for an object of one unit, of
     // which it is a pixel of 1024 (docs/paper.md).
     tolerance_ = a.tolerance.value_or(0.001 * object_side_);
@@ -160,7 +161,7 @@ MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Sh
                              const std::function<void(double)>& progress) {
     const uint32_t frames = settings.repeat;
     if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
-    MadePicture made = maker_->make(Tracer::ldc, settings, shot, progress);
+    MadePicture made = workspace_->render(settings, shot, progress);
     std::vector<RenderStats::FrameTime>& times = made.stats.render.frames;
     times.erase(times.begin(), times.end() - frames);
     return made;
@@ -200,10 +201,9 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
     // What the options exclude costs no device: some drivers cannot be opened any number of times by one process.
     rendered_ = false;
     check(tracing);
-    RenderSettings settings = settings_of(arguments_);
+    RenderSettings settings = render_settings(arguments_);
     settings.repeat = repeat_;
     settings.cubes.ldc_each = true;
-    if (!maker_) maker_ = std::make_unique<PictureMaker>(*scene_, arguments_);
     rendered_ = true;
     summarise(render(settings, progress), row);
     row.object_pixels = object_pixels(row.stats->render.bodies);
@@ -212,8 +212,8 @@ void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progr
 
 void BenchScene::recover() {
     if (!rendered_) return;
-    maker_->check_validation();
-    maker_.reset();
+    workspace_->check_validation();
+    workspace_->renew_device();
     rendered_ = false;
 }
 

@@ -14,9 +14,10 @@
 #include "cli/bench_rows.h"
 #include "cli/bench_scenes.h"
 #include "cli/messages.h"
-#include "cli/prepare.h"
 #include "cli/stats_json.h"
 #include "cli/version.h"
+#include "workspace/posed_scene.h"
+#include "workspace/render_settings.h"
 
 namespace peelray {
 namespace {
@@ -45,7 +46,7 @@ class MeasuredScene {
     /// Throws Error where the scene cannot be had.
     MeasuredScene(Device& device, ClockProbe& probe, const BenchSceneChoice& choice, uint32_t repeat);
 
-    uint64_t triangles() const { return scene_.triangles; }
+    uint64_t triangles() const { return scene_.triangles(); }
     /// Makes the rays of the pictures that follow.
     void look(const glm::uvec2& size, const std::vector<RayKind>& kinds);
     /// Measures cubes; with a whole frame on demand. All of these throw Error, Interrupted.
@@ -63,7 +64,7 @@ class MeasuredScene {
     ClockProbe& probe_;
     BenchSceneChoice choice_;
     uint32_t repeat_;
-    PreparedScene scene_;
+    PosedScene scene_;
     Assembly assembly_;
     Oracle oracle_;
     std::unique_ptr<Renderer> renderer_;
@@ -77,12 +78,12 @@ MeasuredScene::MeasuredScene(Device& device, ClockProbe& probe, const BenchScene
       probe_(probe),
       choice_(choice),
       repeat_(repeat),
-      scene_(prepare_scene(choice_.picture)),
-      assembly_(assemble(scene_.scene, scene_.moment, motion_of(scene_.scene, scene_.animation))),
-      oracle_(scene_.geometry(), AlphaTest(scene_.scene, scene_.geometry())) {
+      scene_(choice_.picture, print_note),
+      assembly_(scene_.assembly_of_moment()),
+      oracle_(scene_.geometry(), AlphaTest(scene_.scene(), scene_.geometry())) {
     if (choice_.light) return;
-    const std::vector<Light>& own = scene_.moment.lights;
-    const std::vector<Light>& sky = scene_.environment.lights;
+    const std::vector<Light>& own = scene_.moment().lights;
+    const std::vector<Light>& sky = scene_.environment().lights;
     if (!own.empty() || !sky.empty()) {
         choice_.light = own.empty() ? sky.front() : own.front();
         return;
@@ -95,8 +96,8 @@ void MeasuredScene::look(const glm::uvec2& size, const std::vector<RayKind>& kin
     choice_.picture.size = size;
     kinds_ = kinds;
     sets_ = {};
-    sets_ = make_ray_sets(scene_.scene, scene_.geometry(), oracle_,
-                          {scene_.camera, size.x, size.y, scene_.bounds, *choice_.light}, kinds);
+    sets_ = make_ray_sets(scene_.scene(), scene_.geometry(), oracle_,
+                          {scene_.camera(), size.x, size.y, scene_.bounds(), *choice_.light}, kinds);
 }
 
 std::vector<Ray> MeasuredScene::started(const RayContender& contender, const std::vector<SurfaceRay>& set) const {
@@ -135,17 +136,17 @@ RenderSettings MeasuredScene::settings_of_way(const Way& way) const {
     picture.tracing.traversal = way.traversal;
     picture.tracing.ldc = way.ldc;
     picture.rebuild = true;
-    RenderSettings settings = settings_of(picture);
-    settings.camera = scene_.camera;
-    settings.bounds = scene_.bounds;
+    RenderSettings settings = render_settings(picture);
+    settings.camera = scene_.camera();
+    settings.bounds = scene_.bounds();
     return settings;
 }
 
 void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     const RenderSettings settings = settings_of_way(way);
     {
-        LdcContender cubes(device_, probe_, scene_.scene, scene_.moment, assembly_,
-                           choose_automatically(device_, uint32_t(scene_.triangles), settings));
+        LdcContender cubes(device_, probe_, scene_.scene(), scene_.moment(), assembly_,
+                           choose_automatically(device_, uint32_t(scene_.triangles()), settings));
         measure(cubes, cubes.stats().resolution, row);
     }
     if (!frame) return;
@@ -161,7 +162,8 @@ void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
 
 void MeasuredScene::measure_frame(const RenderSettings& settings, RayRow& row) {
     if (!renderer_)
-        renderer_ = std::make_unique<Renderer>(device_, scene_.scene, scene_.moment, assembly_, scene_.environment);
+        renderer_ =
+            std::make_unique<Renderer>(device_, scene_.scene(), scene_.moment(), assembly_, scene_.environment());
     RenderSettings repeated = settings;
     repeated.repeat = repeat_ + kFrameWarmUp + 1;  // the renderer leaves out the first itself
     repeated.time_passes = false;
@@ -177,7 +179,7 @@ void MeasuredScene::measure_frame(const RenderSettings& settings, RayRow& row) {
 /// `update`: of structures that are built in every frame, or never again.
 void MeasuredScene::measure_khr(StructureUpdate update, bool frame, RayRow& row) {
     {
-        KhrContender structures(device_, probe_, scene_.scene, scene_.moment, assembly_, update);
+        KhrContender structures(device_, probe_, scene_.scene(), scene_.moment(), assembly_, update);
         measure(structures, 0, row);
     }
     if (!frame) return;

@@ -9,7 +9,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/outputs.h"
-#include "cli/picture_maker.h"
+#include "cli/render_plan.h"
 #include "cli/stats_json.h"
 #include "cli/version.h"
 #include "image/report.h"
@@ -114,7 +114,7 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
                 fmt::format("(given as --picture {})", quoted(path.string()))};
     if (is_linear(path)) {
         entry.radiance = read_hdr(path);
-        const RenderSettings settings = settings_of(a);
+        const RenderSettings settings = render_settings(a);
         entry.encoded = {entry.radiance.width, entry.radiance.height, {}};
         for (const glm::vec4& pixel : entry.radiance.pixels)
             entry.encoded.pixels.push_back(encode(glm::dvec3(pixel), settings.exposure, settings.tonemap));
@@ -128,9 +128,10 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
     return entry;
 }
 
-void render(Entry& entry, PictureMaker& maker, RenderSettings settings) {
+void render(Entry& entry, Workspace& workspace, RenderSettings settings) {
     choose_hit(settings, entry.hit);
-    MadePicture made = maker.make(*entry.tracer, settings);
+    settings.tracer = *entry.tracer;
+    MadePicture made = render_with_bar(workspace, settings);
     entry.encoded = {made.picture.width, made.picture.height, std::move(made.picture.encoded)};
     entry.radiance = {made.picture.width, made.picture.height, std::move(made.picture.radiance)};
     entry.stats = std::move(made.stats);
@@ -205,12 +206,12 @@ glm::uvec2 worst_pixel(const ErrorMap& map) {
 }
 
 Json json_of(const CompareArguments& a, const Report& report, const std::vector<Entry>& entries,
-             const PreparedScene& scene) {
+             const PosedScene& scene) {
     Json json = {{"scene", a.scene},
                  {"command", report.command},
                  {"commit", build_commit()},
                  {"image", {a.size.x, a.size.y}},
-                 {"triangles", scene.triangles},
+                 {"triangles", scene.triangles()},
                  {"reference", entries[report.reference].name},
                  {"notes", report.notes}};
     for (size_t i = 0; i < entries.size(); i++) {
@@ -268,16 +269,16 @@ Image8 worst_of(const Report& report) {
     return sheet;
 }
 
-Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, const PreparedScene& scene) {
+Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, const PosedScene& scene) {
     Report report;
     report.title = a.scene;
     report.command = compare_command(a);
     report.reference = choose_reference(entries);
-    report.facts = {{"triangles", fmt::format("{}", scene.triangles)},
+    report.facts = {{"triangles", fmt::format("{}", scene.triangles())},
                     {"picture", fmt::format("{} × {}, {} sample{} per pixel, {} bounces", a.size.x, a.size.y, a.spp,
                                             a.spp == 1 ? "" : "s", a.bounces)},
                     {"program", fmt::format("peelray {}", build_commit())}};
-    if (!is_reflective(scene.scene, a.spp))
+    if (!is_reflective(scene.scene(), a.spp))
         report.notes.push_back(
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
     const Entry& reference = entries[report.reference];
@@ -331,11 +332,11 @@ void run_compare(const CompareArguments& a) {
         if (same > 1) given.back().name += fmt::format(" ({})", same);
     }
 
-    PreparedScene scene = prepare_scene(a);
+    Workspace workspace(a, print_note);
+    const PosedScene& scene = workspace.scene();
     watch_interrupts();
-    PictureMaker maker(scene, a);
-    for (const Entry& entry : entries) maker.check(*entry.tracer);
-    for (Entry& entry : entries) render(entry, maker, settings_of(a));
+    for (const Entry& entry : entries) workspace.check(*entry.tracer);
+    for (Entry& entry : entries) render(entry, workspace, render_settings(a));
     entries.insert(entries.begin(), given.begin(), given.end());
     const Report report = report_of(a, entries, scene);
     check_interrupt();

@@ -16,11 +16,11 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Settings by their flags, as a user would type them, so that a message can say them.
-Json settings_of(const RenderArguments& arguments, const Sequence& sequence, const PreparedScene& scene) {
+Json settings_of(const RenderArguments& arguments, const Sequence& sequence, const PosedScene& scene) {
     RenderArguments a = arguments;
     // What was chosen, where nothing was given; of a file its name, since its content is compared.
-    a.time = sequence.runs ? std::nullopt : scene.time;
-    a.animation = scene.animation;
+    a.time = sequence.runs ? std::nullopt : scene.time();
+    a.animation = scene.animation();
     a.sequence.fps = sequence.runs ? std::optional(sequence.fps) : std::nullopt;
     a.env = fs::path(a.env).filename().string();
     return manifest_settings(options_of(a));
@@ -108,7 +108,7 @@ fs::path manifest_path(const fs::path& pattern) {
     return pattern.string() + ".json";
 }
 
-Json make_manifest(const RenderArguments& a, const Sequence& sequence, const PreparedScene& scene,
+Json make_manifest(const RenderArguments& a, const Sequence& sequence, const PosedScene& scene,
                    const std::string& renderer) {
     const Json json = {{"manifest", 1},
                        {"program", fmt::format("peelray {}", program_version())},
@@ -116,7 +116,7 @@ Json make_manifest(const RenderArguments& a, const Sequence& sequence, const Pre
                        {"device", renderer},
                        {"scene", a.scene.starts_with("builtin:") ? a.scene : fs::path(a.scene).filename().string()},
                        {"settings", settings_of(a, sequence, scene)},
-                       {"files", files_of(a, scene.scene)}};
+                       {"files", files_of(a, scene.scene())}};
     // As it will read from the file: names need not be UTF-8, JSON is.
     return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -17,7 +17,7 @@ nlohmann::ordered_json manifest_settings(const SettingList& settings);
 /// All that shapes the pictures: options by their values, the program, what renders, and the content of every file that
 /// was read. What does not, such as the range of frames, is left out. Throws Error if a file vanished.
 nlohmann::ordered_json make_manifest(const RenderArguments& arguments, const Sequence& sequence,
-                                     const PreparedScene& scene, const std::string& renderer);
+                                     const PosedScene& scene, const std::string& renderer);
 
 /// Makes `path` say what `now` does. A file there that says so is left alone, and so is its time. One that says
 /// otherwise is replaced, but where the run shares its frames with others (--resume, --shard) it is an Error that tells

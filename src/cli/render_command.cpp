@@ -7,7 +7,7 @@
 #include "cli/messages.h"
 #include "cli/outputs.h"
 #include "cli/picture_files.h"
-#include "cli/picture_maker.h"
+#include "cli/render_plan.h"
 #include "cli/sequence.h"
 #include "cli/stats_json.h"
 #include "settings/aovs.h"
@@ -58,16 +58,16 @@ void run_render(const RenderArguments& a) {
     check_picture_name(a.output);
     if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
-    const RenderSettings settings = settings_of(a);
+    const RenderSettings settings = render_settings(a);
     std::vector<fs::path> outputs = {a.output};
     for (const Aov aov : a.aovs)
         for (const fs::path& path : aov_paths(a.output, aov)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
-    PreparedScene scene = prepare_scene(a);
+    Workspace workspace(a, print_note);
     watch_interrupts();
-    const MadePicture made = PictureMaker(scene, a).make(a.tracing.tracer, settings);
+    const MadePicture made = render_with_bar(workspace, settings);
     write_picture(made.picture, a.aovs, a.output);
     for (const Aov aov : a.aovs)
         if (const RayCostField* field = cost_field(aov))
@@ -75,7 +75,7 @@ void run_render(const RenderArguments& a) {
                                    largest_of(made.picture.aovs.costs, *field)));
     if (!a.stats.empty()) write_json(a.stats, picture_json(made.stats));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    report(a, made, scene.triangles, seconds);
+    report(a, made, workspace.scene().triangles(), seconds);
 }
 
 }  // namespace peelray

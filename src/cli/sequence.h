@@ -1,7 +1,8 @@
 // Several pictures in a row: which frames there are and what each shows.
 #pragma once
 
-#include "cli/picture_maker.h"
+#include "cli/arguments.h"
+#include "workspace/workspace.h"
 
 namespace peelray {
 

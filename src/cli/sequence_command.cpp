@@ -10,6 +10,7 @@
 #include "cli/messages.h"
 #include "cli/outputs.h"
 #include "cli/picture_files.h"
+#include "cli/render_plan.h"
 #include "cli/stats_json.h"
 #include "cli/video.h"
 #include "image/image.h"
@@ -36,13 +37,10 @@ RenderArguments at_first_frame(const RenderArguments& a, const Sequence& sequenc
 class Run {
   public:
     Run(const RenderArguments& a, const Sequence& sequence)
-        : sequence_(sequence),
-          arguments_(at_first_frame(a, sequence)),
-          scene_(prepare_scene(arguments_)),
-          maker_(scene_, arguments_) {}
+        : sequence_(sequence), arguments_(at_first_frame(a, sequence)), workspace_(arguments_, print_note) {}
 
-    const PreparedScene& scene() const { return scene_; }
-    std::string renderer_name() { return maker_.renderer_name(arguments_.tracing.tracer); }
+    const PosedScene& scene() const { return workspace_.scene(); }
+    std::string renderer_name() { return workspace_.renderer_name(arguments_.tracing.tracer); }
     size_t done() const { return done_; }
 
     using Write = std::function<void(uint32_t frame, const MadePicture& picture)>;
@@ -61,8 +59,7 @@ class Run {
     const Sequence& sequence_;
     Clock::time_point start_ = Clock::now();
     RenderArguments arguments_;
-    PreparedScene scene_;
-    PictureMaker maker_;
+    Workspace workspace_;
     size_t done_ = 0;
     std::string device_;  ///< that rendered so far
     RayCounts rays_;
@@ -77,9 +74,8 @@ class Run {
 };
 
 MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progress) {
-    const RenderSettings settings = settings_of(arguments_);
     try {
-        return maker_.make(arguments_.tracing.tracer, settings, sequence_.shot(frame), progress);
+        return workspace_.render(render_settings(arguments_), sequence_.shot(frame), progress);
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
@@ -102,7 +98,7 @@ void Run::count(uint32_t frame, MadePicture& made) {
 }
 
 Json Run::frame_json(const Frame& frame) const {
-    const std::optional<double> time = frame.shot.time ? frame.shot.time : scene_.time;
+    const std::optional<double> time = frame.shot.time ? frame.shot.time : scene().time();
     Json json = {{"frame", frame.number}, {"time", time ? Json(*time) : Json(nullptr)}};
     if (sequence_.turntable > 0) json["turn_degrees"] = frame.shot.turn * 360;
     json.update(picture_json(frame.stats));
@@ -216,7 +212,7 @@ void render_pictures(const RenderArguments& a, const Sequence& sequence) {
     check_picture_name(a.output);
     check_files(a, pattern, sequence, {a.scene, a.env});
     Run run(a, sequence);
-    check_files(a, pattern, sequence, run.scene().scene.files);
+    check_files(a, pattern, sequence, run.scene().scene().files);
     watch_interrupts();
     remove_stale_temporaries(a.output.parent_path());
     settle_manifest(manifest_path(a.output), make_manifest(a, sequence, run.scene(), run.renderer_name()),

@@ -6,12 +6,13 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/outputs.h"
-#include "cli/prepare.h"
 #include "cli/stats_json.h"
 #include "image/image.h"
 #include "image/npy.h"
 #include "loaders/load.h"
 #include "render/ray_scene.h"
+#include "workspace/posed_scene.h"
+#include "workspace/render_settings.h"
 
 namespace peelray {
 
@@ -116,10 +117,9 @@ void run_trace(const TraceArguments& a) {
     const Scene scene = load_scene(a.scene);
     const Moment rest = at_rest(scene);
     const Geometry geometry = flatten(scene, rest);
-    check_visible(geometry, scene);
+    check_visible(geometry, scene, false, print_note);
 
     RenderSettings settings;
-    settings.cubes.ldc = a.tracing.ldc.value_or(0);
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
     settings.tracer = a.tracing.tracer;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/setting.h"
+
 namespace peelray {
 
 Machine machine_of(const Device& device) {
@@ -28,10 +30,9 @@ std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice&
         if (!flat(body) && (!worst || voxels(body) < voxels(*worst))) worst = &body;
     if (!worst || !(voxels(*worst) < 0.5f)) return {};
     return fmt::format(
-        "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; --tolerance {:.2g} "
-        "makes "
-        "it a pixel",
-        choice.tolerance, voxels(*worst), choice.tolerance / voxels(*worst));
+        "the tolerance of {:.3g} is {:.2g} pixels of a cube: rays slip through sloping surfaces; {} {:.2g} makes it a "
+        "pixel",
+        choice.tolerance, voxels(*worst), setting::tolerance, choice.tolerance / voxels(*worst));
 }
 
 }  // namespace peelray

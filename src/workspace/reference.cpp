@@ -1,5 +1,8 @@
-#include "cli/reference_picture.h"
+#include "workspace/reference.h"
 
+#include "base/error.h"
+
+#ifdef PEELRAY_WITH_REFERENCE
 #include <fmt/format.h>
 
 #include <chrono>
@@ -9,13 +12,13 @@
 
 namespace peelray {
 
-MadePicture reference_picture(PreparedScene& scene, const PictureSettings& settings,
+MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings,
                               const std::function<void(double)>& progress) {
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
     const Geometry& geometry = scene.geometry();
-    const PathTracer tracer(scene.scene, scene.moment, geometry, scene.environment);
+    const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment());
     const auto built = Clock::now();
     MadePicture made;
     made.picture = tracer.render(settings, progress);
@@ -27,8 +30,8 @@ MadePicture reference_picture(PreparedScene& scene, const PictureSettings& setti
                      PathTracer::version(), ""};
     stats.width = made.picture.width;
     stats.height = made.picture.height;
-    stats.triangles = scene.triangles;
-    stats.box = scene.bounds;
+    stats.triangles = scene.triangles();
+    stats.box = scene.bounds();
     stats.rays = made.picture.rays;
     RenderStats& times = stats.render;
     times.timed = true;
@@ -43,3 +46,20 @@ std::string reference_version() {
 }
 
 }  // namespace peelray
+#else
+namespace peelray {
+
+[[noreturn]] static void fail_without_reference() {
+    fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use {} ldc", setting::tracer);
+}
+
+MadePicture reference_picture(PosedScene&, const PictureSettings&, const std::function<void(double)>&) {
+    fail_without_reference();
+}
+
+std::string reference_version() {
+    fail_without_reference();
+}
+
+}  // namespace peelray
+#endif

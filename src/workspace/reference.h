@@ -1,13 +1,13 @@
-// --tracer reference: the CPU's picture and its stats. Not built without Embree (PEELRAY_REFERENCE=OFF).
+// The CPU reference's pictures. Without Embree (PEELRAY_REFERENCE=OFF) all of these throw Error.
 #pragma once
 
 #include <functional>
 
-#include "cli/picture_maker.h"
+#include "workspace/workspace.h"
 
 namespace peelray {
 
-MadePicture reference_picture(PreparedScene& scene, const PictureSettings& settings,
+MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings,
                               const std::function<void(double)>& progress);
 
 /// Which reference this is: its pictures do not depend on the machine.

@@ -1,0 +1,36 @@
+#include "cli/render_plan.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "settings/aovs.h"
+
+namespace peelray {
+
+static bool wants_costs(const RenderArguments& a) {
+    return std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return cost_field(aov); });
+}
+
+RenderSettings render_settings(const RenderArguments& a) {
+    RenderSettings settings = render_settings(static_cast<const PictureArguments&>(a));
+    settings.counters = a.counters || wants_costs(a);
+    settings.aovs = std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return !cost_field(aov); });
+    settings.ray_setup = std::any_of(a.aovs.begin(), a.aovs.end(), is_ray_setup);
+    return settings;
+}
+
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings) {
+    Progress bar(settings.tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
+    return workspace.render(settings, {}, [&](double share) { bar.update(share); });
+}
+
+void check_counters(const RenderArguments& a) {
+    const char* option = a.counters ? "--counters" : wants_costs(a) ? "--aov cost_..." : nullptr;
+    if (option && a.tracing.tracer != Tracer::ldc)
+        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none", option,
+             name_of(a.tracing.tracer));
+    if (a.counters && a.stats.empty()) fail("what --counters counts goes into the stats: name a file (--stats)");
+}
+
+}  // namespace peelray

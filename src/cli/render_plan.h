@@ -1,0 +1,17 @@
+// What commands ask of a workspace.
+#pragma once
+
+#include "cli/arguments.h"
+#include "workspace/render_settings.h"
+#include "workspace/workspace.h"
+
+namespace peelray {
+
+/// The picture's settings with what goes into other files.
+RenderSettings render_settings(const RenderArguments& arguments);
+/// Throws Error where what is to be counted cannot be or goes nowhere.
+void check_counters(const RenderArguments& arguments);
+/// A picture with a progress bar of its own.
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings);
+
+}  // namespace peelray

@@ -1,0 +1,43 @@
+#include "workspace/render_settings.h"
+
+namespace peelray {
+
+void choose_hit(RenderSettings& settings, std::optional<HitTest> hit) {
+    settings.hit_auto = !hit;
+    settings.cubes.hit = hit.value_or(HitTest::exact);
+}
+
+void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
+    CubeLayout& layout = settings.cubes.layout;
+    settings.cubes.ldc = tracing.ldc.value_or(0);
+    settings.cubes.tolerance = float(tracing.tolerance);
+    layout.traversal = tracing.traversal;
+    layout.block = tracing.block;
+    layout.batch = tracing.batch;
+    layout.half_depth = tracing.depth == 16;
+    layout.builder = tracing.builder.value_or(BuilderKind::compute);
+    layout.routing = tracing.routing;
+}
+
+RenderSettings render_settings(const PictureArguments& a) {
+    RenderSettings settings;
+    settings.tracer = a.tracing.tracer;
+    settings.width = a.size.x;
+    settings.height = a.size.y;
+    choose_tracing(settings, a.tracing);
+    choose_hit(settings, a.tracing.hit);
+    settings.bounces = a.bounces;
+    settings.spp = a.spp;
+    settings.repeat = a.repeat;
+    settings.rebuild = a.rebuild;
+    settings.visibility = a.visibility;
+    settings.exposure = a.exposure;
+    settings.tonemap = a.tonemap;
+    settings.reflection = a.effects.has(Effect::reflection);
+    settings.refraction = a.effects.has(Effect::refraction);
+    settings.shadow = a.effects.has(Effect::shadow);
+    settings.ambient = a.effects.has(Effect::ambient);
+    return settings;
+}
+
+}  // namespace peelray

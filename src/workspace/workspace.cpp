@@ -1,0 +1,98 @@
+#include "workspace/workspace.h"
+
+#include <utility>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "workspace/reference.h"
+#include "workspace/render_settings.h"
+
+namespace peelray {
+
+Workspace::Workspace(const PictureArguments& settings, Notes notes)
+    : settings_(settings), notes_(std::move(notes)), scene_(settings_, notes_) {}
+
+Workspace::~Workspace() = default;
+
+Device& Workspace::device() {
+    const DeviceArguments& a = settings_.device;
+    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{a.device, a.validate});
+    return *device_;
+}
+
+std::string Workspace::renderer_name(Tracer tracer) {
+    return tracer == Tracer::reference ? reference_version() : device().info().name;
+}
+
+void Workspace::check(Tracer tracer) {
+    if (tracer == Tracer::khr) device().check_ray_tracing();
+}
+
+void Workspace::renew_device() {
+    renderer_.reset();
+    device_.reset();
+    noted_ambient_ = noted_tolerance_ = false;
+}
+
+void Workspace::check_validation() const {
+    if (device_) device_->check_validation();
+}
+
+MadePicture Workspace::render(const Shot& shot, const Progress& progress) {
+    return render(render_settings(settings_), shot, progress);
+}
+
+MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const Progress& progress) {
+    if (shot.time) scene_.move_to(*shot.time);
+    settings.camera = turned(scene_.camera(), shot.turn);
+    settings.bounds = scene_.bounds();
+    const auto report = [&](double share) {
+        check_interrupt();
+        if (progress) progress(share);
+    };
+    if (settings.tracer == Tracer::reference) return reference_picture(scene_, settings, report);
+    if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_ambient_, true))
+        note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
+    return render_on_device(settings, report);
+}
+
+/// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another,
+/// since what one needed must not count as another's memory.
+Renderer& Workspace::renderer_for(const RenderSettings& settings) {
+    // Cube maps stand in the middle of objects, whose boxes the CPU knows.
+    if (settings.tracer == Tracer::cubemap) scene_.simulate();
+    const Kind kind{settings.tracer, settings.hit_auto, settings.cubes.hit};
+    if (!renderer_ || !(kind == kind_)) {
+        renderer_.reset();
+        device().reset_peak();
+        renderer_ = std::make_unique<Renderer>(*device_, scene_.scene(), scene_.moment(), scene_.assembly(),
+                                               scene_.environment());
+        kind_ = kind;
+        posed_ = scene_.time();
+    }
+    if (posed_ != scene_.time()) renderer_->pose(scene_.moment());
+    posed_ = scene_.time();
+    return *renderer_;
+}
+
+MadePicture Workspace::render_on_device(const RenderSettings& settings, const Progress& progress) {
+    RenderResult result = renderer_for(settings).render(settings, progress);
+    device_->check_validation();
+    MadePicture made;
+    PictureStats& stats = made.stats;
+    stats.machine = machine_of(*device_);
+    stats.width = result.width;
+    stats.height = result.height;
+    stats.triangles = scene_.triangles();
+    stats.box = scene_.bounds();
+    stats.rays = result.rays;
+    stats.render = std::move(result.stats);
+    for (const RayCostField& field : kRayCostFields)
+        stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
+    const std::string text = tolerance_note(stats.render.bodies, stats.render.choice);
+    if (!text.empty() && !std::exchange(noted_tolerance_, true)) note(notes_, text);
+    made.picture = std::move(result);
+    return made;
+}
+
+}  // namespace peelray

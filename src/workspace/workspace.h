@@ -1,0 +1,83 @@
+// Pictures of one scene by any tracer:
+//
+//     PictureArguments settings;
+//     settings.scene = "builtin:glass";
+//     Workspace workspace(settings);
+//     const MadePicture made = workspace.render({.time = 0.5});
+//     double ms = made.stats.render.frame_ms;
+//
+// Nothing here prints.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "workspace/posed_scene.h"
+#include "workspace/stats.h"
+
+namespace peelray {
+
+/// A picture and how it was made.
+struct MadePicture {
+    Picture picture;
+    PictureStats stats;
+};
+
+/// When and from where a picture is seen.
+struct Shot {
+    std::optional<double> time;  ///< of the animation, seconds; none: the moment that the scene is in
+    double turn = 0;             ///< how far the camera goes around its look point, see turned()
+};
+
+/// Opens the device when a tracer first needs one and keeps it, and what is on it, from picture to picture.
+class Workspace {
+  public:
+    /// Told the share of a picture that is done, [0, 1]; what it throws ends the work.
+    using Progress = std::function<void(double share)>;
+
+    /// Opens the scene of `settings`. Throws Error.
+    explicit Workspace(const PictureArguments& settings, Notes notes = {});
+    ~Workspace();
+
+    PosedScene& scene() { return scene_; }
+    const PosedScene& scene() const { return scene_; }
+
+    /// The picture that the settings ask for. Throws Error: no device, impossible settings, an interrupt, a validation
+    /// message.
+    MadePicture render(const Shot& shot = {}, const Progress& progress = {});
+    /// The same scene rendered in another way; camera and bounds are the workspace's.
+    MadePicture render(RenderSettings settings, const Shot& shot = {}, const Progress& progress = {});
+
+    /// Throws Error where a tracer cannot render on this device.
+    void check(Tracer tracer);
+    /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
+    std::string renderer_name(Tracer tracer);
+    /// Throws Error with the validation layers' first message, if there is any.
+    void check_validation() const;
+    /// What follows gets a device that is as new: after an Error it may be lost.
+    void renew_device();
+
+  private:
+    Device& device();
+    Renderer& renderer_for(const RenderSettings& settings);
+    MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
+
+    PictureArguments settings_;
+    Notes notes_;
+    PosedScene scene_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Renderer> renderer_;
+    /// What the renderer was made for.
+    struct Kind {
+        Tracer tracer;
+        bool hit_auto;
+        HitTest hit;
+        bool operator==(const Kind&) const = default;
+    } kind_{};
+    std::optional<double> posed_;   ///< the moment that the renderer is in
+    bool noted_ambient_ = false;    ///< said that a tracer has none
+    bool noted_tolerance_ = false;  ///< said that it is too small
+};
+
+}  // namespace peelray
