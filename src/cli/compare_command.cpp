@@ -164,7 +164,7 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     if (!entry.stats) return facts;
     const PictureStats& stats = *entry.stats;
     const RenderStats& s = stats.render;
-    const bool cpu = stats.by_reference, khr = !cpu && s.tracer == Tracer::khr;
+    const bool cpu = stats.by_reference(), khr = s.tracer == Tracer::khr;
     facts.emplace_back("device", stats.machine.name + ", " + stats.machine.driver);
     facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s.frame_ms));
     if (s.build_ms > 0)
@@ -185,7 +185,7 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
                                        s.structures.kept == s.structures.bodies ? "once" : name_of(s.update)));
         facts.emplace_back("structures in memory", mebibytes(s.structures.bytes));
     }
-    if (!cpu && s.tracer == Tracer::cubemap) {
+    if (s.tracer == Tracer::cubemap) {
         const CubeMaps::Stats& maps = s.maps;
         facts.emplace_back("of which the maps", ms(s.maps_ms));
         facts.emplace_back("cube maps", fmt::format("{} of 6 × {}²", maps.probes, maps.face));

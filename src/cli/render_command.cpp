@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 /// Who answered for the rays, and times.
 std::string summary_of(const PictureStats& stats) {
     const RenderStats& s = stats.render;
-    if (stats.by_reference) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
+    if (stats.by_reference()) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
     std::string text;
     if (stats.has_cubes()) text = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
     if (s.tracer == Tracer::cubemap)

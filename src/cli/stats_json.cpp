@@ -212,7 +212,7 @@ static void add_render_json(Json& json, const PictureStats& stats) {
 
 Json picture_json(const PictureStats& stats) {
     const RenderStats& s = stats.render;
-    Json json = {{"tracer", stats.by_reference ? "reference" : name_of(s.tracer)}};
+    Json json = {{"tracer", name_of(s.tracer)}};
     json.update(machine_json(stats.machine));
     json["image"] = {stats.width, stats.height};
     json["triangles"] = stats.triangles;
@@ -221,7 +221,7 @@ Json picture_json(const PictureStats& stats) {
     json["build_ms"] = s.build_ms;
     for (const RenderStats::Time& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["rays"] = rays_json(stats.rays);
-    if (stats.by_reference)
+    if (stats.by_reference())
         json["hit"] = "double";
     else
         add_render_json(json, stats);

@@ -25,7 +25,6 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     const auto done = Clock::now();
 
     PictureStats& stats = made.stats;
-    stats.by_reference = true;
     stats.machine = {fmt::format("{} CPU threads", std::max(1u, std::thread::hardware_concurrency())), "cpu",
                      PathTracer::version(), ""};
     stats.width = made.picture.width;
@@ -34,6 +33,7 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     stats.box = scene.bounds();
     stats.rays = made.picture.rays;
     RenderStats& times = stats.render;
+    times.tracer = Tracer::reference;
     times.timed = true;
     times.build_ms = ms(built - start);
     times.frame_ms = ms(done - built);

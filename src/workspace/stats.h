@@ -20,17 +20,17 @@ Machine machine_of(const Device& device);
 
 /// How a picture was made.
 struct PictureStats {
-    bool by_reference = false;  ///< by the CPU reference: of `render` only times and passes hold
     Machine machine;
     uint32_t width = 0, height = 0;
     uint64_t triangles = 0;  ///< of the scene, with all instances
     Box box;                 ///< of the scene
     RayCounts rays;
-    RenderStats render;
+    RenderStats render;           ///< of Tracer::reference only times and passes
     RayCosts largest_of_a_pixel;  ///< where costs were counted
 
+    bool by_reference() const { return render.tracer == Tracer::reference; }
     /// Were rays traced in layered depth cubes?
-    bool has_cubes() const { return !by_reference && render.cubes.bodies > 0; }
+    bool has_cubes() const { return render.cubes.bodies > 0; }
 };
 
 /// How rays from a file were traced.

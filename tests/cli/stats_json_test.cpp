@@ -105,7 +105,7 @@ TEST(StatsJson, CubesOneByOne) {
 
 TEST(StatsJson, TheReferenceHasNoDevice) {
     PictureStats stats;
-    stats.by_reference = true;
+    stats.render.tracer = Tracer::reference;
     stats.machine = {"2 CPU threads", "cpu", "Embree 3", ""};
     stats.render.timed = true;
     stats.render.passes = {{"build/bvh", 1}, {"trace and shade", 2}};
