@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/error.h"
 #include "base/interrupt.h"
 
 namespace peelray {
@@ -13,6 +14,12 @@ constexpr uint32_t kGroups = 1024, kSteps = 20'000;
 constexpr double kNear = 0.985;
 
 }  // namespace
+
+void check_timestamps(const Device& device) {
+    if (device.timestamp_period() == 0)
+        fail("the device '{}' has no timestamps: nothing can be measured on it; choose another ({})",
+             device.info().name, setting::device);
+}
 
 ClockProbe::ClockProbe(Device& device)
     : device_(device),

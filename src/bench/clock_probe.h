@@ -6,6 +6,9 @@
 
 namespace peelray {
 
+/// Throws Error if the device has no timestamps.
+void check_timestamps(const Device& device);
+
 class ClockProbe {
   public:
     explicit ClockProbe(Device& device);

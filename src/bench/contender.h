@@ -1,9 +1,9 @@
 // Who takes part in a benchmark of rays.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/timing.h"
@@ -17,6 +17,9 @@ enum class Claim : uint8_t {
     voxel,   ///< those, within a voxel
     single,  ///< those of a single-precision ray tracer: wrong at some edges
 };
+
+/// Bytes held by each structure, by its name; scratch memory included.
+using MemoryUse = std::vector<std::pair<std::string, uint64_t>>;
 
 /// A structure over one scene's triangles and the rays that are traced in it. It is made whole: built, or ready to be.
 class RayContender {
@@ -43,8 +46,7 @@ class RayContender {
     /// How the rays were traced, if there was a choice.
     virtual std::string way() const { return {}; }
 
-    /// Bytes held by each structure, by its name; scratch memory included.
-    virtual nlohmann::ordered_json memory() const = 0;
+    virtual MemoryUse memory() const = 0;
 };
 
 }  // namespace peelray

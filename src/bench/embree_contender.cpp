@@ -155,8 +155,8 @@ Timing EmbreeContender::time_trace(bool any_hit, uint32_t runs) {
     return time_repeatedly(std::min(runs, 5u), [&] { return trace(any_hit, packets_); });
 }
 
-nlohmann::ordered_json EmbreeContender::memory() const {
-    return {{"bvh_and_vertices", bytes_}};
+MemoryUse EmbreeContender::memory() const {
+    return {{"bvh_and_vertices", uint64_t(bytes_)}};
 }
 
 }  // namespace peelray

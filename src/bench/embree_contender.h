@@ -25,7 +25,7 @@ class EmbreeContender : public RayContender {
     Timing time_trace(bool any_hit, uint32_t runs) override;
     std::vector<FileHit> answers() override { return hits_; }
     std::string way() const override { return packets_ ? "packets of 8" : "single rays"; }
-    nlohmann::ordered_json memory() const override;
+    MemoryUse memory() const override;
 
     /// "Embree 3.13.5"
     static std::string version();

@@ -37,7 +37,7 @@ Timing KhrContender::time_refit(uint32_t runs) {
     return timing;
 }
 
-nlohmann::ordered_json KhrContender::memory() const {
+MemoryUse KhrContender::memory() const {
     const Structures::Stats stats = scene_->structures()->stats();
     return {{"acceleration_structures", stats.bytes}, {"build_scratch", stats.scratch_bytes}};
 }

@@ -17,7 +17,7 @@ class KhrContender : public GpuContender {
     Claim claim() const override { return Claim::single; }
     Timing time_build(uint32_t runs) override;
     Timing time_refit(uint32_t runs) override;
-    nlohmann::ordered_json memory() const override;
+    MemoryUse memory() const override;
 
   protected:
     void record_build(Commands& commands) override { scene_->record_build(commands); }

@@ -43,11 +43,11 @@ float LdcContender::start_offset(uint32_t triangle) const {
     return voxels_.empty() || triangle == ~0u ? 0 : kPlanarOffset * voxels_[triangle];
 }
 
-nlohmann::ordered_json LdcContender::memory() const {
+MemoryUse LdcContender::memory() const {
     const Cubes& cubes = scene_.cubes().cubes();
-    nlohmann::ordered_json bytes;
+    MemoryUse use;
     const auto add = [&](const char* name, const Buffer& buffer) {
-        if (buffer) bytes[name] = buffer.bytes();
+        if (buffer) use.emplace_back(name, buffer.bytes());
     };
     add("top_table", cubes.top_table);
     add("node_table", cubes.node_table);
@@ -57,9 +57,9 @@ nlohmann::ordered_json LdcContender::memory() const {
     add("samples", cubes.has_patches() ? cubes.patches : cubes.samples);
     add("sample_ids", cubes.sample_ids);
     add("corners", cubes.corners);
-    bytes["instances"] = scene_.instances().bytes();
-    bytes["build_scratch"] = stats().scratch_bytes;
-    return bytes;
+    use.emplace_back("instances", scene_.instances().bytes());
+    use.emplace_back("build_scratch", stats().scratch_bytes);
+    return use;
 }
 
 }  // namespace peelray

@@ -16,7 +16,7 @@ class LdcContender : public GpuContender {
     Claim claim() const override;
     float start_offset(uint32_t triangle) const override;
     double voxel() const override { return voxel_; }
-    nlohmann::ordered_json memory() const override;
+    MemoryUse memory() const override;
 
     SceneCubes::Stats stats() const { return scene_.cubes().stats(); }
 

@@ -19,12 +19,6 @@ Timing timing_of(std::vector<double> ms) {
     return timing;
 }
 
-nlohmann::ordered_json timing_json(const Timing& timing) {
-    if (timing.runs == 0) return nullptr;
-    return {{"median", timing.median}, {"least", timing.least}, {"most", timing.most},
-            {"drift", timing.drift},   {"clock", timing.clock}, {"runs", timing.runs}};
-}
-
 Timing time_repeatedly(uint32_t runs, const std::function<double()>& run) {
     using Clock = std::chrono::steady_clock;
     constexpr uint32_t least = 2, most = 100;

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace peelray {
@@ -21,9 +20,6 @@ struct Timing {
 
 /// `ms`: in the order of measurement; of none: no runs.
 Timing timing_of(std::vector<double> ms);
-
-/// The times as JSON; null without runs.
-nlohmann::ordered_json timing_json(const Timing& timing);
 
 /// Times `run` (milliseconds each) `runs` times, after at least two that warm up and last 20 ms together. Throws what
 /// it throws, and Interrupted between its runs.

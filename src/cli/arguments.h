@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/bench_settings.h"
 #include "settings/settings.h"
 
 namespace peelray {
@@ -43,24 +44,11 @@ struct TraceArguments {
 };
 
 /// Lists that are empty stand for the default, which `run_bench` fills in.
-struct BenchArguments {
-    bool paper = false, all = false, quick = false, auto_check = false;
-    std::vector<std::string> scenes;
-    std::vector<BuilderKind> builders;
-    std::vector<Traversal> traversals;
-    std::vector<HitTest> hits;
-    std::vector<RayKind> rays;
-    std::vector<std::optional<uint32_t>> ldc;      ///< none: auto
-    std::optional<std::vector<glm::uvec2>> sizes;  ///< of the series of picture sizes
-    glm::uvec2 block{8}, size{0};
+struct BenchArguments : BenchSettings {
+    bool paper = false, auto_check = false;
     std::optional<glm::uvec2> given_size;  ///< what `size` becomes, if given
-    Routing routing = Routing::geometry;
-    std::optional<double> tolerance;  ///< none: in proportion to the scene
-    uint32_t repeat = 0;
     std::optional<uint32_t> given_repeat;
-    std::optional<std::filesystem::path> models;  ///< none: the folder "models", if there is one
     std::filesystem::path output, markdown, plots;
-    DeviceArguments device;
 };
 
 /// All options of a command but the scene, in the order of its help.

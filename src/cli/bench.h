@@ -2,7 +2,6 @@
 #pragma once
 
 #include "cli/arguments.h"
-#include "gpu/device.h"
 
 namespace peelray {
 
@@ -12,10 +11,5 @@ void run_paper_bench(const BenchArguments& arguments);
 void run_ray_bench(const BenchArguments& arguments);
 /// --auto-check: what `auto` chooses against the best fixed choice.
 void run_auto_check(const BenchArguments& arguments);
-
-/// Throws Error if the device has no timestamps.
-void check_timestamps(const Device& device);
-/// Writes a text to a file, whole or not at all.
-void write_text(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace peelray

@@ -1,13 +1,10 @@
 // `peelray bench`: what was asked for, and whether that makes sense.
-#include <fstream>
-
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "bench/scenes.h"
 #include "cli/bench.h"
-#include "cli/bench_scenes.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
-#include "image/image.h"
 
 namespace peelray {
 namespace {
@@ -59,21 +56,6 @@ void check_arguments(const BenchArguments& a) {
 }
 
 }  // namespace
-
-void check_timestamps(const Device& device) {
-    if (device.timestamp_period() == 0)
-        fail("the device '{}' has no timestamps: nothing can be measured on it; choose another (--device)",
-             device.info().name);
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    write_atomically(path, [&](const fs::path& temporary) {
-        std::ofstream stream(temporary);
-        stream << text;
-        stream.close();
-        if (!stream) fail("cannot write '{}': is the disk full?", path.string());
-    });
-}
 
 void run_bench(const BenchArguments& given) {
     const BenchArguments a = with_defaults(given);

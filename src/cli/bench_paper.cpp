@@ -1,347 +1,140 @@
-// `peelray bench --paper`.
-#include <algorithm>
-#include <cmath>
+// `peelray bench --paper`: Table 1 of the paper, and ours beside it.
+#include <fmt/ranges.h>
 
-#include "base/error.h"
-#include "base/interrupt.h"
 #include "base/progress.h"
+#include "bench/paper_bench.h"
 #include "cli/bench.h"
+#include "cli/bench_output.h"
 #include "cli/messages.h"
-#include "cli/paper_table.h"
 #include "cli/stats_json.h"
-#include "image/image.h"
-#include "motion/animation.h"
-#include "workspace/render_settings.h"
-#include "workspace/workspace.h"
+#include "cli/version.h"
 
 namespace peelray {
-namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A way to build cubes and trace in them.
-struct Combination {
-    BuilderKind builder;
-    Traversal traversal;
-    HitTest hit;
-};
+// ---- JSON
 
-/// The paper's system and ours; where a list was given, or --all, everything.
-std::vector<Combination> choose_combinations(const BenchArguments& a) {
-    if (!a.all && a.builders.empty() && a.traversals.empty() && a.hits.empty())
-        return {{BuilderKind::peel, Traversal::two_level, HitTest::tolerance},
-                {BuilderKind::compute, Traversal::voxel, HitTest::exact},
-                {BuilderKind::compute, Traversal::voxel, HitTest::planar}};
-    // All: from the paper's system to ours.
-    const auto chosen = []<typename Value>(const std::vector<Value>& list) {
-        const std::vector<Value> all = values_of<Value>();
-        return list.empty() ? std::vector<Value>(all.rbegin(), all.rend()) : list;
+static Json spread_json(const Timing& spread) {
+    return {{"median", spread.median}, {"least", spread.least}, {"most", spread.most}};
+}
+
+static Json row_json(const PaperRow& row) {
+    const bool measured = row.left_out.empty();
+    const auto if_measured = [&](Json value) { return measured ? std::move(value) : Json(nullptr); };
+    Json json = {
+        {"scene", row.scene->name},
+        {"shown", row.shown},
+        {"stands_in", row.stands_in},
+        {"triangles", row.triangles ? Json(row.triangles) : Json(nullptr)},
+        {"builder", name_of(row.builder)},
+        {"traversal", name_of(row.traversal)},
+        {"hit", name_of(row.hit)},
+        {"n", row.ldc},
+        {"tolerance", row.hit == HitTest::tolerance && row.tolerance > 0 ? Json(row.tolerance) : Json(nullptr)},
+        {"object_pixels", row.object_pixels ? Json(row.object_pixels) : Json(nullptr)},
+        {"left_out", measured ? Json(nullptr) : Json(reason_text(row.left_out))},
+        {"layers", row.layers ? Json(*row.layers) : Json(nullptr)},
+        {"a_ms", if_measured(spread_json(row.a))},
+        {"b_ms", if_measured(spread_json(row.b))},
+        {"frame_ms", if_measured(spread_json(row.frame))}};
+    Json passes = Json::array();
+    for (const RenderStats::Time& pass : row.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
+    json["passes"] = if_measured(passes);
+    json["rays"] = row.stats ? rays_json(row.stats->rays) : Json(nullptr);
+    json["ldc"] = row.stats ? cubes_json(*row.stats) : Json(nullptr);
+    json["memory_bytes"] = row.stats ? memory_bytes_json(row.stats->render) : Json(nullptr);
+    json["paper"] = {{"triangles", row.scene->triangles}, {"layers", row.scene->layers}};
+    const PaperScene::Time* time = row.scene->at(row.ldc);
+    json["paper"]["a_ms"] = time ? Json(time->a_ms) : Json(nullptr);
+    json["paper"]["b_ms"] = time ? Json(time->b_ms) : Json(nullptr);
+    return json;
+}
+
+// ---- Markdown
+
+static std::string paper_table_head(const BenchArguments& a, const Machine& device) {
+    std::string text = fmt::format(
+        "{}, driver {}, Vulkan {}, commit {}; {}x{} pixels, {} frame{} each, blocks of {}x{}; GPU milliseconds, "
+        "medians\n\n",
+        device.name, device.driver, device.api_version, build_commit(), a.size.x, a.size.y, a.repeat,
+        a.repeat == 1 ? "" : "s", a.block.x, a.block.y);
+    text +=
+        "| scene | triangles | builder | traversal | hits | LDIs | object | layers | A | least to most | B | least to "
+        "most | "
+        "paper: "
+        "layers | A | B | note |\n"
+        "|---|---:|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
+    return text;
+}
+
+static std::string table_row(const PaperRow& row) {
+    const std::string unknown = "–";
+    const bool measured = row.left_out.empty();
+    const auto median = [&](const Timing& s) { return measured ? fmt::format("{:.3f}", s.median) : unknown; };
+    const auto ends = [&](const Timing& s) {
+        return measured ? fmt::format("{:.3f} to {:.3f}", s.least, s.most) : unknown;
     };
-    std::vector<Combination> combinations;
-    for (const BuilderKind builder : chosen(a.builders))
-        for (const Traversal traversal : chosen(a.traversals))
-            for (const HitTest hit : chosen(a.hits)) combinations.push_back({builder, traversal, hit});
-    return combinations;
+    const PaperScene::Time* time = row.scene->at(row.ldc);
+    std::string note = row.stands_in ? row.shown : "";
+    if (!measured) note += (note.empty() ? "left out: " : "; left out: ") + reason_text(row.left_out);
+    const auto known = [&](uint64_t number) { return number ? fmt::format("{}", number) : unknown; };
+    const std::vector<std::string> cells = {row.scene->title,
+                                            known(row.triangles),
+                                            name_of(row.builder),
+                                            name_of(row.traversal),
+                                            name_of(row.hit),
+                                            fmt::format("{}²", row.ldc),
+                                            known(row.object_pixels),
+                                            row.layers ? fmt::format("{}", *row.layers) : unknown,
+                                            median(row.a),
+                                            ends(row.a),
+                                            median(row.b),
+                                            ends(row.b),
+                                            fmt::format("{}", row.scene->layers),
+                                            time ? fmt::format("{}", time->a_ms) : unknown,
+                                            time ? fmt::format("{}", time->b_ms) : unknown,
+                                            table_cell(note)};
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
-std::vector<const PaperScene*> choose_scenes(const BenchArguments& a) {
-    std::vector<const PaperScene*> scenes;
-    for (const PaperScene& scene : paper_scenes())
-        if (a.scenes.empty() || std::find(a.scenes.begin(), a.scenes.end(), scene.name) != a.scenes.end())
-            scenes.push_back(&scene);
-    return scenes;
+static std::string table_foot() {
+    return "\nLDIs: of the largest cube, mostly the floor's; object: pixels along the longest side of what stands on "
+           "it. "
+           "Layers: samples of the fullest pixel. A: construction of the cubes, all anew. B: the rest of the frame: "
+           "tracing and the final picture. The paper's own figures: GeForce 8800 GTX, 1280x1024, other meshes. A note "
+           "that names "
+           "a built-in scene: it stands in for a file that is missing.\n";
 }
 
-/// The depth complexity of a scene's LDIs: the samples of the fullest pixel of all. None: the stats count lists of
-/// voxels, which is another thing.
-std::optional<uint32_t> depth_complexity(const RenderStats& stats) {
-    if (!stats.choice.layout.by_pixel()) return std::nullopt;
-    return stats.cubes.counts.longest;
+static Json paper_head_json(const BenchArguments& a, const Machine& machine) {
+    Json json = {{"benchmark", "paper"}};
+    json.update(machine_json(machine));
+    json["image"] = {a.size.x, a.size.y};
+    json["frames"] = a.repeat;
+    json["block"] = {a.block.x, a.block.y};
+    json["routing"] = name_of(a.routing);
+    const PictureArguments defaults;
+    json["bounces"] = defaults.bounces;
+    json["spp"] = defaults.spp;
+    for (const Effect effect : values_of<Effect>())
+        if (defaults.effects.has(effect)) json["effects"].push_back(name_of(effect));
+    json["rebuild"] = true;
+    return json;
 }
-
-/// Frames that come before those that are measured, beside the renderer's own first one: a GPU that was idle needs some
-/// to raise its clock.
-constexpr uint32_t kWarmUp = 4;
-/// The same where every moment of an animation is measured by itself.
-constexpr uint32_t kWarmUpOfMoment = 2;
-
-float longest_side(const Box& box) {
-    const glm::vec3 size = box.upper - box.lower;
-    return std::max({size.x, size.y, size.z});
-}
-
-/// Times and the last frame's stats of what was measured.
-void summarise(const std::vector<MadePicture>& pictures, BenchRow& row) {
-    std::vector<double> a, b, frame;
-    std::vector<std::pair<std::string, std::vector<double>>> passes;
-    for (const MadePicture& picture : pictures) {
-        for (const RenderStats::FrameTime& time : picture.stats.render.frames) {
-            a.push_back(time.build_ms);
-            b.push_back(time.frame_ms - time.build_ms);
-            frame.push_back(time.frame_ms);
-        }
-        for (const RenderStats::Time& pass : picture.stats.render.passes) {
-            auto found =
-                std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == pass.name; });
-            if (found == passes.end()) found = passes.insert(passes.end(), {pass.name, {}});
-            found->second.push_back(pass.ms);
-        }
-    }
-    row.a = spread_of(a);
-    row.b = spread_of(b);
-    row.frame = spread_of(frame);
-    for (const auto& [name, ms] : passes) row.passes.push_back({name, spread_of(ms).median});
-    row.stats = pictures.back().stats;
-}
-
-/// The box of what a built-in scene is about: the object of most triangles.
-Box largest_object(const Geometry& geometry) {
-    const auto object = std::max_element(geometry.objects.begin(), geometry.objects.end(),
-                                         [](const auto& a, const auto& b) { return a.count < b.count; });
-    Box box;
-    for (uint32_t i = object->first; i < object->first + object->count; i++)
-        for (int k = 0; k < 3; k++) box.add(geometry.positions[geometry.triangles[i][k]]);
-    return box;
-}
-
-/// One scene of the table, ready to be measured.
-class BenchScene {
-  public:
-    /// Throws Error where the scene cannot be had.
-    BenchScene(const PaperScene& scene, const BenchArguments& a, const std::optional<fs::path>& file);
-
-    uint64_t triangles() const { return workspace_->scene().triangles(); }
-    double tolerance() const { return tolerance_; }
-    /// Fills in what was measured. Throws Error where that cannot be done, Interrupted.
-    void measure(BenchRow& row, const std::function<void(double)>& progress);
-    /// After an Error: what follows gets a device that is as new. Throws Error if the validation layers said anything,
-    /// which must not be passed over.
-    void recover();
-
-  private:
-    std::vector<MadePicture> render(const RenderSettings& settings, const std::function<void(double)>& progress);
-    uint32_t object_pixels(const std::vector<LdcBody>& bodies) const;
-    MadePicture make(RenderSettings settings, uint32_t warm_up, const Shot& shot,
-                     const std::function<void(double)>& progress);
-
-    PictureArguments arguments_;
-    std::optional<Workspace> workspace_;
-    bool rendered_ = false;  ///< something has been rendered since the last look
-    double tolerance_ = 0, duration_ = 0;
-    float object_side_ = 0;  ///< longest, of what stands on the floor
-    uint32_t repeat_;
-};
-
-BenchScene::BenchScene(const PaperScene& scene, const BenchArguments& a, const std::optional<fs::path>& file)
-    : repeat_(a.repeat) {
-    PictureArguments& p = arguments_;
-    p.scene = file ? file->string() : scene.stand_in;
-    p.size = a.size;
-    p.device = a.device;
-    p.rebuild = true;
-    p.tracing.block = a.block;
-    p.tracing.routing = a.routing;
-    p.floor = file.has_value();
-    if (file) p.material = scene.material;
-    p.animation = file ? scene.animation : scene.stand_in_animation;
-    if (!p.animation.empty()) p.time = 0;
-    workspace_.emplace(p, print_note);
-    PosedScene& opened = workspace_->scene();
-    if (p.time) duration_ = find_animations(opened.scene(), p.animation).front()->duration;
-    object_side_ = longest_side(file ? opened.framed() : largest_object(opened.geometry()));
-    // Meshes come in metres, inches or what their scanner had: the paper's 0.001 is taken for an object of one unit, of
-    // which it is a pixel of 1024 (docs/paper.md).
-    tolerance_ = a.tolerance.value_or(0.001 * object_side_);
-    p.tracing.tolerance = tolerance_;
-}
-
-/// The picture of one moment with the times of `settings.repeat` frames, those that warm up left out.
-MadePicture BenchScene::make(RenderSettings settings, uint32_t warm_up, const Shot& shot,
-                             const std::function<void(double)>& progress) {
-    const uint32_t frames = settings.repeat;
-    if (repeat_ > 1) settings.repeat += warm_up + 1;  // the renderer leaves out the first itself
-    MadePicture made = workspace_->render(settings, shot, progress);
-    std::vector<RenderStats::FrameTime>& times = made.stats.render.frames;
-    times.erase(times.begin(), times.end() - frames);
-    return made;
-}
-
-/// All frames at one moment, or one at each of as many moments of an animation.
-std::vector<MadePicture> BenchScene::render(const RenderSettings& settings,
-                                            const std::function<void(double)>& progress) {
-    std::vector<MadePicture> pictures;
-    if (duration_ == 0) {
-        pictures.push_back(make(settings, kWarmUp, {}, progress));
-        return pictures;
-    }
-    RenderSettings of_moment = settings;
-    of_moment.repeat = 1;
-    for (uint32_t i = 0; i < repeat_; i++) {
-        pictures.push_back(make(of_moment, kWarmUpOfMoment, {duration_ * i / repeat_},
-                                [&](double share) { progress((i + share) / repeat_); }));
-        pictures.back().picture = {};  // of no use, and large
-    }
-    return pictures;
-}
-
-/// Pixels along the longest side of what stands on the floor, in the cube that holds most triangles.
-uint32_t BenchScene::object_pixels(const std::vector<LdcBody>& bodies) const {
-    const auto most = std::max_element(bodies.begin(), bodies.end(),
-                                       [](const LdcBody& a, const LdcBody& b) { return a.triangles < b.triangles; });
-    return uint32_t(std::lround(object_side_ / most->grid.voxel));
-}
-
-void BenchScene::measure(BenchRow& row, const std::function<void(double)>& progress) {
-    TracingArguments& tracing = arguments_.tracing;
-    tracing.builder = row.builder;
-    tracing.traversal = row.traversal;
-    tracing.hit = row.hit;
-    tracing.ldc = row.ldc;
-    // What the options exclude costs no device: some drivers cannot be opened any number of times by one process.
-    rendered_ = false;
-    check(tracing);
-    RenderSettings settings = render_settings(arguments_);
-    settings.repeat = repeat_;
-    settings.cubes.ldc_each = true;
-    rendered_ = true;
-    summarise(render(settings, progress), row);
-    row.object_pixels = object_pixels(row.stats->render.bodies);
-    row.layers = depth_complexity(row.stats->render);
-}
-
-void BenchScene::recover() {
-    if (!rendered_) return;
-    workspace_->check_validation();
-    workspace_->renew_device();
-    rendered_ = false;
-}
-
-/// A run of `bench --paper`.
-class PaperBench {
-  public:
-    explicit PaperBench(const BenchArguments& a)
-        : a_(a), combinations_(choose_combinations(a)), scenes_(choose_scenes(a)) {
-        const Device device({a.device.device, a.device.validate});
-        check_timestamps(device);
-        device_ = machine_of(device);
-    }
-
-    void run();
-
-  private:
-    size_t rows_in_all() const { return scenes_.size() * combinations_.size() * a_.ldc.size(); }
-    void measure(const PaperScene& scene, Progress& bar);
-    void say(const std::string& text);
-    void add(const BenchRow& row);
-    void write(bool complete) const;
-
-    const BenchArguments& a_;
-    std::vector<Combination> combinations_;
-    std::vector<const PaperScene*> scenes_;
-    Machine device_;
-    Json rows_ = Json::array();
-    std::string table_, reason_;  ///< reason_: why the first row was left out
-    size_t measured_ = 0;
-};
-
-void PaperBench::say(const std::string& text) {
-    table_ += text;
-    fmt::print("{}", text);
-    std::fflush(stdout);
-}
-
-/// What there is goes to the files at once, so that nothing that ends the run takes it away.
-void PaperBench::add(const BenchRow& row) {
-    rows_.push_back(row_json(row));
-    if (row.left_out.empty())
-        measured_++;
-    else if (reason_.empty())
-        reason_ = row.left_out;
-    say(table_row(row));
-    write(false);
-}
-
-void PaperBench::write(bool complete) const {
-    if (!a_.output.empty()) {
-        Json json = {{"benchmark", "paper"}};
-        json.update(machine_json(device_));
-        json["image"] = {a_.size.x, a_.size.y};
-        json["frames"] = a_.repeat;
-        json["block"] = {a_.block.x, a_.block.y};
-        json["routing"] = name_of(a_.routing);
-        const PictureArguments defaults;
-        json["bounces"] = defaults.bounces;
-        json["spp"] = defaults.spp;
-        for (const Effect effect : values_of<Effect>())
-            if (defaults.effects.has(effect)) json["effects"].push_back(name_of(effect));
-        json["rebuild"] = true;
-        json["complete"] = complete;
-        json["rows"] = rows_;
-        write_json(a_.output, json);
-    }
-    if (a_.markdown.empty()) return;
-    write_text(a_.markdown, table_ + (complete ? "" : table_foot()));
-}
-
-void PaperBench::measure(const PaperScene& paper, Progress& bar) {
-    const auto file = find_model(a_.models.value_or("models"), paper);
-    if (!file)
-        print_note(fmt::format("{}: there is no {}: {} stands in (--models)", paper.name, paper.file, paper.stand_in));
-    std::optional<BenchScene> scene;
-    std::string unusable;
-    try {
-        scene.emplace(paper, a_, file);
-    } catch (const Error& error) {
-        unusable = message_of(error);
-    }
-    for (const Combination& c : combinations_)
-        for (const auto& ldc : a_.ldc) {
-            check_interrupt();
-            const double done = double(rows_.size());
-            BenchRow row{&paper, file ? file->filename().string() : paper.stand_in, !file};
-            row.builder = c.builder;
-            row.traversal = c.traversal;
-            row.hit = c.hit;
-            row.ldc = *ldc;
-            row.left_out = unusable;
-            if (scene) {
-                row.triangles = scene->triangles();
-                row.tolerance = scene->tolerance();
-                try {
-                    scene->measure(row, [&](double share) { bar.update(done + share); });
-                } catch (const Interrupted&) {
-                    throw;
-                } catch (const Error& error) {
-                    row.left_out = message_of(error);
-                    scene->recover();
-                }
-            }
-            add(row);
-            bar.update(done + 1);
-        }
-}
-
-void PaperBench::run() {
-    say(table_head(a_, device_));
-    Progress bar("measuring", double(rows_in_all()), "rows");
-    try {
-        for (const PaperScene* scene : scenes_) measure(*scene, bar);
-    } catch (const Interrupted&) {
-        say(table_foot());
-        write(false);
-        fail("interrupted after {} of {} rows{}", rows_.size(), rows_in_all(),
-             a_.output.empty() ? "" : fmt::format(", which {} holds", a_.output.string()));
-    }
-    say(table_foot());
-    write(true);
-    if (measured_ == 0) fail("none of the {} rows could be measured: {}", rows_.size(), reason_);
-}
-
-}  // namespace
 
 void run_paper_bench(const BenchArguments& a) {
-    PaperBench(a).run();
+    PaperBench bench(a, print_note);
+    BenchOutput output(a, paper_head_json(a, bench.machine()), table_foot());
+    output.say(paper_table_head(a, bench.machine()));
+    Progress bar("measuring", double(bench.rows()), "rows");
+    output.run(
+        bench.rows(),
+        [&] {
+            bench.run([&](const PaperRow& row) { output.add(row_json(row), table_row(row), row.left_out); },
+                      [&](double rows) { bar.update(rows); });
+        },
+        [&](bool) { output.say(table_foot()); });
 }
 
 }  // namespace peelray

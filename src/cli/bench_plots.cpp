@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/bench.h"
+#include "cli/bench_output.h"
 #include "image/line_chart.h"
 
 namespace peelray {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "cli/bench_rows.h"
+#include "bench/ray_rows.h"
 
 namespace peelray {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "bench/paper_scenes.h"
 #include "builtin/builtin.h"
-#include "cli/paper_table.h"
 
 namespace peelray {
 namespace {

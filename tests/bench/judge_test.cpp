@@ -21,7 +21,7 @@ class Fake : public RayContender {
     void take(std::vector<Ray>) override {}
     Timing time_trace(bool, uint32_t) override { return {}; }
     std::vector<FileHit> answers() override { return {}; }
-    nlohmann::ordered_json memory() const override { return {}; }
+    MemoryUse memory() const override { return {}; }
 
   private:
     Claim claim_;
@@ -151,7 +151,10 @@ TEST_F(JudgeTest, EmbreeAnswersRightBySingleRaysAndPackets) {
         const Judgement judgement = judge(oracle_, geometry_, embree, 0, rays, hits, any_hit);
         EXPECT_TRUE(judgement.passes()) << judgement.wrong;
     }
-    EXPECT_GT(embree.memory()["bvh_and_vertices"], int64_t(geometry_.triangles.size() * 12));
+    const MemoryUse memory = embree.memory();
+    ASSERT_EQ(memory.size(), 1u);
+    EXPECT_EQ(memory[0].first, "bvh_and_vertices");
+    EXPECT_GT(memory[0].second, geometry_.triangles.size() * 12);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What the table and the JSON say of a row; above all, that wrong answers cost their time.
-#include "cli/bench_rows.h"
+#include "cli/bench_rays.h"
 
 #include <gtest/gtest.h>
 

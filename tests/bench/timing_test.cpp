@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/bench_output.h"
+
 namespace peelray {
 namespace {
 

@@ -1,7 +1,7 @@
-// The scenes of plain `peelray bench`.
+// The scenes of the benchmarks of rays and of `auto`.
 #pragma once
 
-#include "cli/arguments.h"
+#include "bench/bench_settings.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -24,6 +24,6 @@ std::vector<std::string> quick_bench_scenes();
 void check_bench_scene(const std::string& name);
 
 /// `name`: passed check_bench_scene().
-BenchSceneChoice choose_bench_scene(const std::string& name, const BenchArguments& arguments);
+BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings& settings);
 
 }  // namespace peelray

@@ -1,10 +1,10 @@
-#include "cli/bench_scenes.h"
+#include "bench/scenes.h"
 
 #include <algorithm>
 
 #include "base/error.h"
+#include "bench/paper_scenes.h"
 #include "builtin/builtin.h"
-#include "cli/paper_table.h"
 
 namespace peelray {
 namespace {
@@ -50,10 +50,10 @@ void check_bench_scene(const std::string& name) {
     std::string known;
     for (const PaperScene& scene : paper_scenes()) known += fmt::format("{}, ", scene.name);
     for (const BuiltinScene& scene : builtin_scenes()) known += fmt::format("{}, ", scene.name);
-    fail("there is no scene '{}': choose {}or a file (--scenes)", one_line(name), known);
+    fail("there is no scene '{}': choose {}or a file ({})", name, known, Setting{"scenes"});
 }
 
-BenchSceneChoice choose_bench_scene(const std::string& name, const BenchArguments& a) {
+BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings& a) {
     BenchSceneChoice choice;
     choice.name = name;
     PictureArguments& p = choice.picture;
