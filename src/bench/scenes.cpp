@@ -73,7 +73,7 @@ BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings
     p.scene = builtin ? "builtin:" + without_builtin(name) : name;
     choice.shown = builtin ? p.scene : fs::path(name).filename().string();
     if (without_builtin(name).starts_with("blob")) {
-        // As the prototypes saw it, and lit it, whose figures are known.
+        // A view and a lamp of its own, so that figures of different versions can be compared.
         p.eye = glm::vec3(0.9f, 1.1f, 2.9f);
         p.look = glm::vec3(0, -0.15f, 0);
         p.fov = 28.45f;
