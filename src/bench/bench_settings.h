@@ -29,7 +29,7 @@ struct BenchSettings {
     DeviceArguments device;
 };
 
-/// Told how many rows are done, the one at hand in part.
+/// Receives how many rows are done, the current one in part.
 using RowProgress = std::function<void(double rows)>;
 
 }  // namespace peelray

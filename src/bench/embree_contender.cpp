@@ -17,7 +17,7 @@ double now_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Embree tells of its memory by differences, from any thread.
+/// Embree reports its memory as differences, from any thread.
 bool count_bytes(void* counter, ssize_t bytes, bool) {
     std::atomic_ref<int64_t>(*static_cast<int64_t*>(counter)) += bytes;
     return true;

@@ -18,7 +18,7 @@ class EmbreeContender : public RayContender {
     EmbreeContender& operator=(const EmbreeContender&) = delete;
 
     Claim claim() const override { return Claim::single; }
-    /// At most three times, for it is slow and steady.
+    /// At most three times, since it is slow and steady.
     Timing time_build(uint32_t runs) override;
     void take(std::vector<Ray> rays) override;
     /// By single rays and by packets of eight in turn; the faster way counts. At most five times.

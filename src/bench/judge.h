@@ -27,7 +27,7 @@ struct Judgement {
 /// within
 ///   2·10⁻⁶ of the diagonal, to 10⁻⁵).
 /// - Claim::single: the same, one in 10,000 may be: single precision decides wrongly at some edges.
-/// - Claim::voxel: hits must lie within a voxel of the right one, or of that of a parallel ray at most a voxel beside.
+/// - Claim::voxel: hits must lie within a voxel of the right one, or of that of a parallel ray at most a voxel away.
 ///   0.3 % of the hits may be off by more at 1024 voxels, and at other resolutions as much more as the voxels are
 ///   larger: 1.2 % at 256. `resolution`: voxels along the largest cube.
 Judgement judge(const Oracle& oracle, const Geometry& geometry, const RayContender& contender, uint32_t resolution,

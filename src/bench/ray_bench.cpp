@@ -31,7 +31,7 @@ using Way = RayBench::Way;
 /// One scene, its rays for one picture size at a time, and its oracle.
 class MeasuredScene {
   public:
-    /// Throws Error where the scene cannot be had.
+    /// Throws Error where the scene cannot be loaded.
     MeasuredScene(Device& device, ClockProbe& probe, const BenchSceneChoice& choice, uint32_t repeat,
                   const Notes& notes);
 

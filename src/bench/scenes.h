@@ -6,7 +6,7 @@
 
 namespace peelray {
 
-/// How a scene is shown: what `render` would be told.
+/// How a scene is shown: the settings that `render` would get.
 struct BenchSceneChoice {
     std::string name;   ///< as --scenes has it
     std::string shown;  ///< file name or built-in scene

@@ -1,5 +1,5 @@
 // The table of settings: what a picture shows and how it is made. A setting is a member here and, beside it, its entry;
-// options, help, checks and the manifest of a sequence follow from the entry. docs/usage.md tells how they are used.
+// options, help, checks and the manifest of a sequence follow from the entry. docs/usage.md shows how they are used.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -38,15 +38,15 @@ class PosedScene {
 
     /// The triangles of this moment; put together when they are first asked for, since most tracers need none.
     const Geometry& geometry();
-    /// Places what is generated on the CPU, too: geometry() does, and who looks at objects' boxes must.
+    /// Places what is generated on the CPU, too: geometry() does it, and a reader of objects' boxes must call it.
     void simulate();
 
     /// Goes to another moment of the animation: triangles, camera and lights are then those of `seconds`. Without an
     /// animation the scene stays at rest.
     void move_to(double seconds);
 
-    /// For a renderer that goes from moment to moment: taken apart at the beginning of the animation, for where a
-    /// picture's moment lies must not shape its cubes.
+    /// For a renderer that goes from moment to moment: divided at the beginning of the animation, since the moment of a
+    /// picture must not shape its cubes.
     Assembly assembly() const;
     /// For rays through this moment alone.
     Assembly assembly_of_moment() const;
@@ -68,7 +68,7 @@ class PosedScene {
     Environment environment_;
 };
 
-/// The scene's triangles. Tells what of the scene is left out; throws Error if nothing can be hit, unless that is but
+/// The scene's triangles. Notes what is left out of the scene; throws Error if nothing can be hit, unless that is but
 /// one moment of an animation.
 void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment, const Notes& notes);
 
