@@ -88,7 +88,7 @@ std::string builtin_list() {
 
 const char* const kSceneHelp = "a file (.gltf, .glb, .obj, .ply, .stl, .off) or builtin:NAME";
 
-void add_render(CLI::App& program, RenderArguments& a) {
+CLI::App* add_render(CLI::App& program, RenderArguments& a) {
     CLI::App& app = *program.add_subcommand("render", "Render a scene to a picture, several or a video");
     app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
     add_options(app, options_of(a));
@@ -99,9 +99,10 @@ void add_render(CLI::App& program, RenderArguments& a) {
                "  peelray render bunny.off -o mirror.png --material mirror --floor --stats stats.json\n"
                "  peelray render walk.glb -o walk.mp4 --frames 0:90 --floor\n"
                "  peelray render bunny.off -o turn_%03d.png --turntable 120 --resume");
+    return &app;
 }
 
-CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
+CLI::App* add_compare(CLI::App& program, CompareArguments& a) {
     CLI::App& app =
         *program.add_subcommand("compare", "Render a scene with several tracers and report how they differ");
     app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
@@ -112,10 +113,10 @@ CLI::App& add_compare(CLI::App& program, CompareArguments& a) {
         "Examples:\n"
         "  peelray compare builtin:teapots -o report.html\n"
         "  peelray compare model.glb -o report.html --tracers ldc,reference --hit exact,planar --ldc 1024");
-    return app;
+    return &app;
 }
 
-void add_trace(CLI::App& program, TraceArguments& a) {
+CLI::App* add_trace(CLI::App& program, TraceArguments& a) {
     CLI::App& app = *program.add_subcommand("trace", "Trace the rays of a .npy file and write what they hit");
     app.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
     add_options(app, options_of(a));
@@ -124,9 +125,10 @@ void add_trace(CLI::App& program, TraceArguments& a) {
         "  python3 -c \"import numpy as n; n.save('rays.npy', n.array([[0,1,9,0, 0,0,-1,100]], n.float32))\"\n"
         "  peelray trace builtin:teapots --rays rays.npy --out hits.npy\n"
         "  python3 -c \"import numpy as n; print(n.load('hits.npy'))\"");
+    return &app;
 }
 
-void add_bench(CLI::App& program, BenchArguments& a) {
+CLI::App* add_bench(CLI::App& program, BenchArguments& a) {
     CLI::App& app = *program.add_subcommand(
         "bench", "Measure: cubes, rays and frames, against rivals on the same rays; the paper's Table 1 (--paper)");
     add_options(app, options_of(a));
@@ -139,6 +141,7 @@ void add_bench(CLI::App& program, BenchArguments& a) {
         "  peelray bench --scenes blob:120000,car.glb --rays mirror,shadow --ldc auto,256 --sizes none\n"
         "  peelray bench --paper --models models --out bench.json\n"
         "  peelray bench --paper --scenes bunny --builders compute --traversals voxel --ldc 256,512,1024");
+    return &app;
 }
 
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& a) {

@@ -7,10 +7,10 @@
 
 namespace peelray {
 
-void add_render(CLI::App& program, RenderArguments& arguments);
-CLI::App& add_compare(CLI::App& program, CompareArguments& arguments);
-void add_trace(CLI::App& program, TraceArguments& arguments);
-void add_bench(CLI::App& program, BenchArguments& arguments);
+CLI::App* add_render(CLI::App& program, RenderArguments& arguments);
+CLI::App* add_compare(CLI::App& program, CompareArguments& arguments);
+CLI::App* add_trace(CLI::App& program, TraceArguments& arguments);
+CLI::App* add_bench(CLI::App& program, BenchArguments& arguments);
 
 /// The options of a picture that were given to `compare`: `render` takes them as well.
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& arguments);

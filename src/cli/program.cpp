@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 
 #include "base/error.h"
 #include "cli/commands.h"
@@ -32,6 +33,55 @@ std::string describe(const CLI::ParseError& error, const CLI::App& program) {
     return error.what();
 }
 
+/// What each command is asked for.
+struct Arguments {
+    RenderArguments render;
+    CompareArguments compare;
+    TraceArguments trace;
+    BenchArguments bench;
+    std::string info_scene;
+};
+
+struct Command {
+    CLI::App* options;
+    std::function<void()> run;
+};
+
+/// Runs a command whose options are within their limits.
+template <typename Options>
+void run_within_limits(Options& arguments, void (*run)(const Options&)) {
+    check_limits(options_of(arguments));
+    run(arguments);
+}
+
+std::vector<Command> add_commands(CLI::App& program, Arguments& a) {
+    CLI::App* render = add_render(program, a.render);
+    CLI::App* compare = add_compare(program, a.compare);
+    CLI::App* trace = add_trace(program, a.trace);
+    CLI::App* bench = add_bench(program, a.bench);
+    CLI::App* info = program.add_subcommand("info", "Print what a scene holds");
+    info->add_option("SCENE", a.info_scene, kSceneHelp)->required()->type_name("");
+    info->footer(builtin_list());
+    CLI::App* devices = program.add_subcommand("devices", "List the Vulkan devices (for --device)")->footer("");
+    CLI::App* view = program.add_subcommand("view", "Look around interactively (not built into this version)");
+    view->allow_extras()->footer("");
+    return {{render, [&a] { run_within_limits(a.render, run_render); }},
+            {compare,
+             [&a, compare] {
+                 a.compare.given = given_options(*compare, a.compare);
+                 run_within_limits(a.compare, run_compare);
+             }},
+            {trace, [&a] { run_within_limits(a.trace, run_trace); }},
+            {bench, [&a] { run_within_limits(a.bench, run_bench); }},
+            {info, [&a] { run_info(a.info_scene); }},
+            {devices, run_devices},
+            {view, [] {
+                 fail(
+                     "'view' is not built into this version: there are render, compare, trace, bench, info and "
+                     "devices");
+             }}};
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
@@ -46,21 +96,8 @@ int run_program(int argc, const char* const* argv) {
         "Each command has its own help:  peelray render --help");
     program.get_formatter()->column_width(34);
 
-    RenderArguments render;
-    TraceArguments trace;
-    CompareArguments compare;
-    BenchArguments bench;
-    std::string info_scene;
-    add_render(program, render);
-    CLI::App& compare_options = add_compare(program, compare);
-    add_trace(program, trace);
-    add_bench(program, bench);
-    CLI::App* info = program.add_subcommand("info", "Print what a scene holds");
-    info->add_option("SCENE", info_scene, kSceneHelp)->required()->type_name("");
-    info->footer(builtin_list());
-    program.add_subcommand("devices", "List the Vulkan devices (for --device)")->footer("");
-    CLI::App* view = program.add_subcommand("view", "Look around interactively (not built into this version)");
-    view->allow_extras()->footer("");
+    Arguments arguments;
+    const std::vector<Command> commands = add_commands(program, arguments);
 
     try {
         program.parse(argc, argv);
@@ -75,27 +112,8 @@ int run_program(int argc, const char* const* argv) {
         return 2;
     }
     try {
-        if (program.got_subcommand("render")) {
-            check_limits(options_of(render));
-            run_render(render);
-        }
-        if (program.got_subcommand("compare")) {
-            check_limits(options_of(compare));
-            compare.given = given_options(compare_options, compare);
-            run_compare(compare);
-        }
-        if (program.got_subcommand("trace")) {
-            check_limits(options_of(trace));
-            run_trace(trace);
-        }
-        if (program.got_subcommand("bench")) {
-            check_limits(options_of(bench));
-            run_bench(bench);
-        }
-        if (program.got_subcommand("info")) run_info(info_scene);
-        if (program.got_subcommand("devices")) run_devices();
-        if (view->parsed())
-            fail("'view' is not built into this version: there are render, compare, trace, bench, info and devices");
+        for (const Command& command : commands)
+            if (command.options->parsed()) command.run();
         if (std::fflush(stdout) != 0) fail("cannot write to the standard output: {}", std::strerror(errno));
     } catch (const Error& error) {
         fmt::print(stderr, "peelray: {}\n", one_line(message_of(error)));
