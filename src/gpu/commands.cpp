@@ -1,33 +1,18 @@
 #include "gpu/commands.h"
 
 #include <algorithm>
-#include <cassert>
-#include <utility>
 
 #include "base/error.h"
 
 namespace peelray {
 namespace {
 
-constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
-constexpr uint32_t kTimersPerPool = 512;
 // Indirect arguments are read in a stage of their own.
 constexpr VkPipelineStageFlags2 kCompute =
     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
-constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-constexpr VkPipelineStageFlags2 kGraphics = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 }  // namespace
-
-std::vector<Binding> declared(const PassBase& pass, std::vector<Binding> bindings) {
-    std::erase_if(bindings, [&](const Binding& binding) { return !pass.interface().declares(binding.name); });
-    return bindings;
-}
 
 Commands::Commands(Device& device)
     : device_(device),
@@ -123,107 +108,6 @@ void Commands::barrier() {
     accesses_.clear();
 }
 
-VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
-    for (;; set_pool_++) {
-        if (set_pool_ == set_pools_.size()) {
-            const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kBindingsPerSet},
-                                                  {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kSetsPerPool * 2},
-                                                  {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kSetsPerPool}};
-            VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, kSetsPerPool,
-                                            device_.features.ray_tracing ? 3u : 2u,        sizes};
-            VkDescriptorPool pool = VK_NULL_HANDLE;
-            check_vulkan(device_.vk.vkCreateDescriptorPool(device_.handle, &info, nullptr, &pool),
-                         "creating a descriptor pool");
-            set_pools_.push_back(pool);
-        }
-        VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, set_pools_[set_pool_],
-                                         1, &layout};
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        const VkResult result = device_.vk.vkAllocateDescriptorSets(device_.handle, &info, &set);
-        if (result == VK_SUCCESS) return set;
-        if (result != VK_ERROR_OUT_OF_POOL_MEMORY && result != VK_ERROR_FRAGMENTED_POOL)
-            check_vulkan(result, "allocating descriptors");
-    }
-}
-
-VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard) {
-    const auto& wanted = pass.interface().bindings;
-    if (bindings.size() != wanted.size())
-        fail("the pass {} has {} bindings but was given {} (a programming error)", pass.name(), wanted.size(),
-             bindings.size());
-    // All is checked before anything is recorded: a refused pass leaves the recording as it was.
-    std::vector<const Binding*> matched;
-    for (const ShaderBinding& want : wanted) {
-        const auto given = std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == want.name; });
-        if (given == bindings.end())
-            fail("the pass {} was not given '{}' (a programming error)", pass.name(), want.name);
-        const bool is_given = want.structure ? given->structure && *given->structure
-                              : want.image   ? given->image && *given->image
-                                             : given->buffer && *given->buffer;
-        if (!is_given)
-            fail("the pass {} was given no {} for '{}' (a programming error)", pass.name(),
-                 want.structure ? "acceleration structure"
-                 : want.image   ? "image"
-                                : "buffer",
-                 want.name);
-        matched.push_back(&*given);
-    }
-    const VkDescriptorSet set = allocate_set(pass.set_layout());
-    std::vector<VkDescriptorBufferInfo> infos(wanted.size());
-    std::vector<VkDescriptorImageInfo> image_infos(wanted.size());
-    std::vector<VkAccelerationStructureKHR> structures(wanted.size());
-    std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structure_infos(wanted.size());
-    std::vector<VkWriteDescriptorSet> writes;
-    for (size_t i = 0; i < wanted.size(); i++) {
-        const Binding& given = *matched[i];
-        if (given.image)
-            image_infos[i] = {VK_NULL_HANDLE, given.image->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-        else if (given.structure)
-            structures[i] = given.structure->handle();
-        else
-            infos[i] = {given.buffer->handle(), 0, VK_WHOLE_SIZE};
-        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   nullptr,
-                                   set,
-                                   wanted[i].binding,
-                                   0,
-                                   1,
-                                   descriptor_type(wanted[i]),
-                                   &image_infos[i],
-                                   &infos[i],
-                                   nullptr};
-        if (given.structure) {
-            structure_infos[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr, 1,
-                                  &structures[i]};
-            write.pNext = &structure_infos[i];
-        }
-        writes.push_back(write);
-        if (given.image)
-            touch(*given.image, false, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, hazard);
-        else if (given.structure)
-            touch(*given.structure, hazard);
-        else
-            touch(*given.buffer, wanted[i].reads, wanted[i].writes, hazard);
-    }
-    device_.vk.vkUpdateDescriptorSets(device_.handle, uint32_t(writes.size()), writes.data(), 0, nullptr);
-    return set;
-}
-
-void Commands::mark(std::span<const Binding> bindings, const PassBase& pass) {
-    for (const auto& wanted : pass.interface().bindings) {
-        const auto given =
-            std::find_if(bindings.begin(), bindings.end(), [&](auto& b) { return b.name == wanted.name; });
-        if (given->structure) {
-            access(given->structure->storage()).read = true;
-            for (const Buffer* shown : given->structure->shown) access(*shown).read = true;
-            continue;
-        }
-        Access& done = given->image ? access(*given->image) : access(*given->buffer);
-        done.read |= wanted.reads;
-        done.written |= wanted.writes;
-    }
-}
-
 void Commands::check_params(const PassBase& pass, size_t bytes) {
     if (bytes != pass.interface().push_constant_bytes)
         fail("the pass {} takes {} bytes of parameters but was given {} (a programming error)", pass.name(),
@@ -232,12 +116,14 @@ void Commands::check_params(const PassBase& pass, size_t bytes) {
 
 VkDescriptorSet Commands::prepare(const PassBase& pass, std::span<const Binding> bindings, const Buffer* arguments,
                                   VkPipelineStageFlags2 stages) {
+    const std::vector<const Binding*> given = match(pass, bindings);
     begin();
     bool hazard = false;
-    const VkDescriptorSet set = bind(pass, bindings, hazard);
+    const VkDescriptorSet set = bind(pass, given);
+    touch(pass, given, hazard);
     if (arguments) touch(*arguments, true, false, hazard);
     barrier_if(hazard, stages);
-    mark(bindings, pass);
+    mark(pass, given);
     if (arguments) access(*arguments).read = true;
     return set;
 }
@@ -272,91 +158,6 @@ void Commands::record(const Pass& pass, std::span<const Binding> bindings, const
     finish();
 }
 
-void Commands::record_draw(const RasterPass& pass, std::span<const Binding> bindings, const void* params, size_t bytes,
-                           std::span<const DrawRange> ranges, const IndirectDraws* indirect, const DrawTargets& targets,
-                           const Buffer* copied) {
-    check_params(pass, bytes);
-    assert(targets.colors.size() == pass.setup().colors.size());
-    begin();
-    bool hazard = false;
-    const VkDescriptorSet set = bind(pass, bindings, hazard);
-    for (const Image2D* color : targets.colors)
-        touch(*color, true, true, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, hazard);
-    if (targets.depth) touch(*targets.depth, true, true, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, hazard);
-    if (indirect) touch(indirect->arguments, true, false, hazard);
-    if (copied) touch(*copied, false, true, hazard);
-    barrier_if(hazard, kGraphics);
-    mark(bindings, pass);
-    for (const Image2D* color : targets.colors) access(*color).written = true;
-    if (targets.depth) access(*targets.depth).written = true;
-    if (indirect) access(indirect->arguments).read = true;
-    if (copied) access(*copied).written = true;
-
-    start(pass, VK_PIPELINE_BIND_POINT_GRAPHICS, set, params, bytes);
-    const uint32_t draws = indirect ? indirect->draws : uint32_t(ranges.size());
-    assert(!targets.apart || draws == targets.layers);
-    // Nothing to draw still clears the targets.
-    for (uint32_t i = 0; i < std::max(draws, 1u); i++) {
-        if (i == 0 || targets.apart) begin_rendering(pass, targets, i);
-        if (indirect)
-            device_.vk.vkCmdDrawIndirect(commands_, indirect->arguments.handle(),
-                                         indirect->offset + i * sizeof(VkDrawIndirectCommand), 1, 0);
-        else if (i < draws)
-            device_.vk.vkCmdDraw(commands_, 3 * ranges[i].triangles, ranges[i].instances, 3 * ranges[i].first_triangle,
-                                 ranges[i].first_instance);
-        if (i + 1 >= draws || targets.apart) device_.vk.vkCmdEndRendering(commands_);
-    }
-    if (copied) {
-        const Image2D& color = *targets.colors[0];
-        bool wait = false;
-        touch(color, false, false, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, wait);
-        barrier_if(wait, kTransfer);
-        VkBufferImageCopy region{};
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        region.imageExtent = {color.width(), color.height(), 1};
-        device_.vk.vkCmdCopyImageToBuffer(commands_, color.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                          copied->handle(), 1, &region);
-        access(color).read = true;
-        access(*copied).written = true;
-    }
-    finish();
-}
-
-void Commands::begin_rendering(const RasterPass& pass, const DrawTargets& targets, uint32_t layer) {
-    const auto attachment = [&](const Image2D& image, VkImageLayout layout) {
-        VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-        info.imageView = targets.apart ? image.layer_view(layer) : image.view();
-        info.imageLayout = layout;
-        info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-        return info;
-    };
-    std::vector<VkRenderingAttachmentInfo> colors;
-    for (const Image2D* image : targets.colors) {
-        colors.push_back(attachment(*image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
-        if (image->format() == VK_FORMAT_R32G32_UINT)
-            colors.back().clearValue.color.uint32[0] = colors.back().clearValue.color.uint32[1] = ~0u;
-    }
-    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    rendering.renderArea.extent = {targets.width, targets.height};
-    rendering.layerCount = targets.apart ? 1 : targets.layers;
-    rendering.colorAttachmentCount = uint32_t(colors.size());
-    rendering.pColorAttachments = colors.data();
-    VkRenderingAttachmentInfo depth{};
-    if (targets.depth) {
-        depth = attachment(*targets.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
-        depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-        depth.clearValue.depthStencil.depth = pass.setup().depth == VK_COMPARE_OP_GREATER ? 0.0f : 1.0f;
-        rendering.pDepthAttachment = &depth;
-    }
-    const uint32_t side = targets.viewport;
-    const VkViewport viewport{0, 0, float(side ? side : targets.width), float(side ? side : targets.height), 0, 1};
-    const VkRect2D scissor{{0, 0}, {targets.width, targets.height}};
-    device_.vk.vkCmdBeginRendering(commands_, &rendering);
-    device_.vk.vkCmdSetViewport(commands_, 0, 1, &viewport);
-    device_.vk.vkCmdSetScissor(commands_, 0, 1, &scissor);
-}
-
 void Commands::fill(const Buffer& buffer, uint32_t value, uint64_t offset, uint64_t bytes) {
     begin();
     bool hazard = false;
@@ -378,116 +179,6 @@ void Commands::copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64
     access(to).written = true;
     const VkBufferCopy region{from_offset, to_offset, bytes};
     device_.vk.vkCmdCopyBuffer(commands_, from.handle(), to.handle(), 1, &region);
-}
-
-void Commands::label(const std::string& name) {
-    if (!device_.labels || device_.immediate || !vkCmdBeginDebugUtilsLabelEXT) return;
-    VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name.c_str(), {}};
-    vkCmdBeginDebugUtilsLabelEXT(commands_, &info);
-}
-
-void Commands::end_label() {
-    if (device_.labels && !device_.immediate && vkCmdEndDebugUtilsLabelEXT) vkCmdEndDebugUtilsLabelEXT(commands_);
-}
-
-void Commands::begin_group(const std::string& name) {
-    begin();
-    assert(group_.empty());
-    group_ = name;
-    label(name);
-    if (time_passes_) return;
-    if (device_.immediate) {
-        flush();
-        group_start_ = std::chrono::steady_clock::now();
-        return;
-    }
-    group_timer_ = start_timer("all");
-}
-
-void Commands::end_group() {
-    if (!time_passes_ && device_.immediate && device_.timestamp_period() > 0) {
-        flush();
-        host_times_.push_back({group_ + "/all", milliseconds_since(group_start_)});
-    } else if (!time_passes_) {
-        stop_timer(group_timer_);
-    }
-    group_.clear();
-    end_label();
-}
-
-void Commands::begin_timer(const std::string& name) {
-    if (time_passes_) start_timer(name);
-}
-
-size_t Commands::start_timer(const std::string& name) {
-    const size_t index = timed_.size();
-    if (device_.timestamp_period() == 0) return index;
-    timed_.push_back(group_.empty() ? name : group_ + "/" + name);
-    if (device_.immediate) return index;
-    if (index / kTimersPerPool == query_pools_.size()) {
-        VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-        info.queryCount = 2 * kTimersPerPool;
-        VkQueryPool pool = VK_NULL_HANDLE;
-        check_vulkan(device_.vk.vkCreateQueryPool(device_.handle, &info, nullptr, &pool), "creating a query pool");
-        query_pools_.push_back(pool);
-    }
-    const VkQueryPool pool = query_pools_[index / kTimersPerPool];
-    const uint32_t query = uint32_t(2 * (index % kTimersPerPool));
-    device_.vk.vkResetQueryPool(device_.handle, pool, query, 2);
-    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool, query);
-    return index;
-}
-
-void Commands::end_timer() {
-    if (device_.timestamp_period() == 0 || !time_passes_) return;
-    if (device_.immediate) {
-        const std::string name = timed_.back();
-        const auto start = std::chrono::steady_clock::now();
-        flush();
-        host_times_.push_back({name, milliseconds_since(start)});
-        return;
-    }
-    stop_timer(timed_.size() - 1);
-}
-
-void Commands::stop_timer(size_t index) {
-    if (device_.timestamp_period() == 0 || device_.immediate) return;
-    device_.vk.vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                    query_pools_[index / kTimersPerPool], uint32_t(2 * (index % kTimersPerPool) + 1));
-}
-
-void Commands::read_times() {
-    times_.clear();
-    elapsed_ms_ = 0;
-    uint64_t first = 0, ticks[2] = {};
-    for (size_t i = 0; i < timed_.size(); i++) {
-        check_vulkan(device_.vk.vkGetQueryPoolResults(device_.handle, query_pools_[i / kTimersPerPool],
-                                                      uint32_t(2 * (i % kTimersPerPool)), 2, sizeof ticks, ticks, 8,
-                                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-                     "reading timestamps");
-        times_.push_back({timed_[i], double(ticks[1] - ticks[0]) * device_.timestamp_period() * 1e-6});
-        if (i == 0) first = ticks[0];
-        elapsed_ms_ = std::max(elapsed_ms_, double(ticks[1] - first) * device_.timestamp_period() * 1e-6);
-    }
-}
-
-void Commands::submit() {
-    if (device_.immediate) {
-        flush();
-        times_ = std::exchange(host_times_, {});
-        elapsed_ms_ = 0;
-        for (const PassTime& time : times_) elapsed_ms_ += time.ms;
-        if (!time_passes_ && whole_start_ && device_.timestamp_period() > 0) {
-            elapsed_ms_ = milliseconds_since(*whole_start_);
-            times_.push_back({"all passes", elapsed_ms_});
-        }
-        whole_start_.reset();
-    } else if (recording_) {
-        if (!time_passes_) stop_timer(whole_timer_);
-        flush();
-        read_times();
-    }
 }
 
 void Commands::flush() {

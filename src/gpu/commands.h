@@ -24,14 +24,23 @@ struct Binding {
     const Buffer* buffer = nullptr;
     const Image2D* image = nullptr;
     const AccelerationStructure* structure = nullptr;
+    bool optional = false;
 
     Binding(std::string_view n, const Buffer& b) : name(n), buffer(&b) {}
     Binding(std::string_view n, const Image2D& i) : name(n), image(&i) {}
     Binding(std::string_view n, const AccelerationStructure& s) : name(n), structure(&s) {}
+    /// What some variants of a shader do without. Where the shader declares it and there is no buffer (null or empty),
+    /// it is bound to the device's dummy, which the variant must not touch; a shader that does not declare it is not
+    /// given it.
+    static Binding if_used(std::string_view name, const Buffer* buffer) { return Binding(name, buffer); }
+    static Binding if_used(std::string_view name, const Buffer& buffer) { return Binding(name, &buffer); }
+
+  private:
+    Binding(std::string_view n, const Buffer* b) : name(n), buffer(b && *b ? b : nullptr), optional(true) {}
 };
 
-/// Those bindings that the pass declares: for shaders that leave out what others of their kind need.
-std::vector<Binding> declared(const PassBase& pass, std::vector<Binding> bindings);
+/// The same of all of them: for what several shaders read a part of each.
+std::vector<Binding> if_used(std::span<const Binding> bindings);
 
 /// How often a compute pass runs, in workgroups.
 struct Groups {
@@ -180,6 +189,7 @@ class Commands {
     }
 
   private:
+    static constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     struct Access {
         bool written = false, read = false;
     };
@@ -199,8 +209,12 @@ class Commands {
     /// barrier.
     void barrier_if(bool hazard, VkPipelineStageFlags2 stages);
     void barrier();
-    VkDescriptorSet bind(const PassBase& pass, std::span<const Binding> bindings, bool& hazard);
-    void mark(std::span<const Binding> bindings, const PassBase& pass);
+    /// What is given to each binding of the pass, in their order. Throws Error if one is missing or one too many.
+    static std::vector<const Binding*> match(const PassBase& pass, std::span<const Binding> bindings);
+    VkDescriptorSet bind(const PassBase& pass, std::span<const Binding* const> given);
+    /// Looks for hazards, before the pass's barrier, or notes what the pass does, after it.
+    void touch(const PassBase& pass, std::span<const Binding* const> given, bool& hazard);
+    void mark(const PassBase& pass, std::span<const Binding* const> given);
     static void check_params(const PassBase& pass, size_t bytes);
     /// Before a pass without targets: its set, the barrier it needs, and what it does to its bindings and to the buffer
     /// of its indirect command, if any.

@@ -166,6 +166,7 @@ void Device::create_logical(bool validate) {
     volkLoadDeviceTable(&vk, handle);
     vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);
     immediate = properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !validate;
+    create_dummy();
     // With validation on, shaders are compiled afresh, so that the layers see every pipeline being made.
     state_->cache = std::make_unique<PipelineCache>(*this, !validate);
 }
@@ -173,6 +174,8 @@ void Device::create_logical(bool validate) {
 Device::~Device() {
     vk.vkDeviceWaitIdle(handle);
     state_.reset();
+    vk.vkDestroyBuffer(handle, dummy_, nullptr);
+    vk.vkFreeMemory(handle, dummy_memory_, nullptr);
     vk.vkDestroyDevice(handle, nullptr);
     if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
     vkDestroyInstance(instance_, nullptr);
@@ -210,8 +213,20 @@ void Device::check_validation() const {
              validation_messages_.front());
 }
 
-VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
-                                VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
+/// Nobody reads or writes it. It is not accounted for, since it belongs to no part of the program.
+void Device::create_dummy() {
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = 256;
+    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    check_vulkan(vk.vkCreateBuffer(handle, &info, nullptr, &dummy_), "creating the dummy buffer");
+    VkMemoryRequirements needs;
+    vk.vkGetBufferMemoryRequirements(handle, dummy_, &needs);
+    dummy_memory_ = allocate_uncounted(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, "the dummy buffer", false);
+    check_vulkan(vk.vkBindBufferMemory(handle, dummy_, dummy_memory_, 0), "binding the dummy buffer");
+}
+
+VkDeviceMemory Device::allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
+                                          VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
     int best = -1;
     for (uint32_t type = 0; type < memory_.memoryTypeCount; type++) {
         const auto flags = memory_.memoryTypes[type].propertyFlags;
@@ -230,6 +245,12 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPrope
     VkDeviceMemory memory = VK_NULL_HANDLE;
     check_vulkan(vk.vkAllocateMemory(handle, &info, nullptr, &memory),
                  fmt::format("allocating {:.0f} MiB for {}", double(needs.size) / (1 << 20), what));
+    return memory;
+}
+
+VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
+                                VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
+    const VkDeviceMemory memory = allocate_uncounted(needs, wanted, nice, what, addressed);
     allocated_ += needs.size;
     held_.push_back({memory, {part_, std::string(what), needs.size}});
     if (allocated_ > peak_allocated_) reset_peak();

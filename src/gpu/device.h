@@ -125,6 +125,8 @@ class Device {
     bool immediate = false;
     DeviceFeatures features;  ///< tests turn some off
     bool labels = false;      ///< VK_EXT_debug_utils is on: passes name themselves
+    /// Bound where a variant of a shader does not use a buffer that it declares (Binding::if_used).
+    VkBuffer dummy() const { return dummy_; }
     /// `addressed`: of a buffer with VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
                             std::string_view what, bool addressed = false);
@@ -134,11 +136,16 @@ class Device {
     friend class MemoryPart;
     struct State;
     void create_logical(bool validate);
+    void create_dummy();
+    VkDeviceMemory allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
+                                      VkMemoryPropertyFlags nice, std::string_view what, bool addressed);
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
                                                      const VkDebugUtilsMessengerCallbackDataEXT*, void*);
 
     DeviceInfo info_;
+    VkBuffer dummy_ = VK_NULL_HANDLE;
+    VkDeviceMemory dummy_memory_ = VK_NULL_HANDLE;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     RayTracingLimits ray_tracing_limits_;

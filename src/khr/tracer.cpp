@@ -13,11 +13,11 @@ const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, b
     return device.ray_pass(shader, setup);
 }
 
-std::vector<Binding> khr_bindings(const RayPass& pass, const Structures& structures,
-                                  std::span<const Binding> bindings) {
-    std::vector<Binding> all = {{"structures", structures.top()}, {"part_triangles", structures.part_triangles()}};
+std::vector<Binding> khr_bindings(const Structures& structures, std::span<const Binding> bindings) {
+    std::vector<Binding> all = {{"structures", structures.top()},
+                                Binding::if_used("part_triangles", structures.part_triangles())};
     all.insert(all.end(), bindings.begin(), bindings.end());
-    return declared(pass, std::move(all));
+    return all;
 }
 
 void record_khr_trace(Commands& commands, Device& device, const Structures& structures,
@@ -26,12 +26,11 @@ void record_khr_trace(Commands& commands, Device& device, const Structures& stru
         khr_pass(device, "trace_khr", KhrRays::nearest, triangles.masks != nullptr, {{"any_hit", any_hit}});
     const KhrTraceParams p{queue.count, queue.counters != nullptr, queue.counter, queue.skip != nullptr};
     const Binding bindings[] = {{"rays", queue.rays},
-                                {"skip", queue.skip ? *queue.skip : queue.rays},
-                                {"queue", queue.counters ? *queue.counters : queue.rays},
+                                Binding::if_used("skip", queue.skip),
+                                Binding::if_used("queue", queue.counters),
                                 {"hits", hits},
-                                {"triangles", triangles.triangles}};
-    record_khr_rays(commands, device, pass, khr_bindings(pass, structures, with_alpha_test(bindings, triangles)), p,
-                    queue);
+                                Binding::if_used("triangles", triangles.triangles)};
+    record_khr_rays(commands, device, pass, khr_bindings(structures, with_alpha_test(bindings, triangles)), p, queue);
 }
 
 }  // namespace peelray

@@ -20,8 +20,8 @@ enum class KhrRays : uint8_t {
 /// The pass NAME.rgen for these rays. `constants`: its own, beside those of the shaders of hits.
 const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, Constants constants = {});
 
-/// Those of `bindings` that the pass reads, and the structures.
-std::vector<Binding> khr_bindings(const RayPass& pass, const Structures& structures, std::span<const Binding> bindings);
+/// `bindings`, and the structures.
+std::vector<Binding> khr_bindings(const Structures& structures, std::span<const Binding> bindings);
 
 /// Records a pass of rays for as many as are in the queue.
 template <typename Params>

@@ -12,13 +12,8 @@ std::vector<Binding> base_color_bindings(const BaseColorBuffers& b) {
 
 std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
     std::vector<Binding> all(bindings.begin(), bindings.end());
-    if (triangles.masks) {
-        const std::vector<Binding> masks = base_color_bindings(*triangles.masks);
-        all.insert(all.end(), masks.begin(), masks.end());
-        return all;
-    }
-    for (const char* name : {"materials", "texture_infos", "texels", "uvs", "colors", "triangle_materials"})
-        all.push_back({name, triangles.positions});
+    const BaseColorBuffers none, &masks = triangles.masks ? *triangles.masks : none;
+    for (const Binding& binding : if_used(base_color_bindings(masks))) all.push_back(binding);
     return all;
 }
 

@@ -27,8 +27,8 @@ struct BaseColorBuffers {
 
 std::vector<Binding> base_color_bindings(const BaseColorBuffers& buffers);
 
-/// `bindings`, and the same for a pass that tests the alpha of masked triangles. Without any it reads none of them:
-/// positions stand in.
+/// `bindings`, and the same for a pass that tests the alpha of masked triangles; where there are none, it uses none of
+/// them.
 std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles);
 
 }  // namespace peelray

@@ -29,7 +29,7 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"fragments", state.fragments},
                                 {"bodies", state.cubes.body_table},
                                 {"blocks", blocks_},
-                                {"corners", corners ? state.cubes.corners : state.cubes.body_table}};
+                                Binding::if_used("corners", corners ? &state.cubes.corners : nullptr)};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
     commands.run(
         device.pass("ldc_raster",
@@ -37,8 +37,8 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
         bindings, p, groups_for(p.triangles, 64));
     if (p.block_capacity == 0) return;
     state.record_groups(commands);
-    const Pass& blocks = device.pass("ldc_raster_blocks", {{"masked", masked}});
-    commands.run_indirect(blocks, declared(blocks, bindings), p, state.groups, LDC_GROUPS_BLOCKS * 12);
+    commands.run_indirect(device.pass("ldc_raster_blocks", {{"masked", masked}}), bindings, p, state.groups,
+                          LDC_GROUPS_BLOCKS * 12);
 }
 
 /// Scenes without large triangles do without the passes for them.

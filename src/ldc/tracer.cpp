@@ -4,18 +4,16 @@
 
 namespace peelray {
 
-std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others) {
+/// The tables of a cube, in either order: which there are depends on the layout.
+static std::vector<Binding> table_bindings(const Cubes& cubes) {
     const bool by_pixel = cubes.layout().by_pixel();
-    const auto or_absent = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : absent; };
-    std::vector<Binding> bindings = {{"top_table", or_absent(cubes.top_table)},
-                                     {"node_table", or_absent(by_pixel ? cubes.pixel_offsets : cubes.node_table)},
-                                     {"voxel_table", or_absent(by_pixel ? cubes.pixel_ranges : cubes.voxel_table)},
-                                     {"samples", or_absent(cubes.samples)},
-                                     {"sample_ids", or_absent(cubes.sample_ids)},
-                                     {"patches", or_absent(cubes.patches)},
-                                     {"corners", or_absent(cubes.corners)}};
-    for (const Binding& other : others) bindings.push_back(other);
-    return bindings;
+    return {Binding::if_used("top_table", cubes.top_table),
+            Binding::if_used("node_table", by_pixel ? cubes.pixel_offsets : cubes.node_table),
+            Binding::if_used("voxel_table", by_pixel ? cubes.pixel_ranges : cubes.voxel_table),
+            Binding::if_used("samples", cubes.samples),
+            Binding::if_used("sample_ids", cubes.sample_ids),
+            Binding::if_used("patches", cubes.patches),
+            Binding::if_used("corners", cubes.corners)};
 }
 
 /// Those constants that the tracing of four rays by a thread has, too.
@@ -43,11 +41,12 @@ Constants traversal_constants(const Device& device, const TracedScene& scene, Hi
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others) {
     std::vector<Binding> bindings = {{"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
-                                     {"instances", scene.instances.table()},
-                                     {"instance_boxes", scene.instances.boxes()},
+                                     Binding::if_used("instances", scene.instances.table()),
+                                     Binding::if_used("instance_boxes", scene.instances.boxes()),
                                      {"instance_cubes", scene.instances.cubes()}};
+    for (const Binding& table : table_bindings(scene.cubes)) bindings.push_back(table);
     for (const Binding& other : others) bindings.push_back(other);
-    return sample_bindings(scene.cubes, scene.cubes.body_table, bindings);
+    return bindings;
 }
 
 void record_trace(Commands& commands, Device& device, const TracedScene& scene, const RayQueue& queue,
@@ -71,12 +70,12 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     p.block = scene.cubes.layout().block;
     std::vector<Binding> bindings =
         cube_bindings(scene, {{"rays", queue.rays},
-                              {"skip", queue.skip ? *queue.skip : queue.rays},
-                              {"queue", queue.counters ? *queue.counters : queue.rays},
+                              Binding::if_used("skip", queue.skip),
+                              Binding::if_used("queue", queue.counters),
                               {"hits", hits},
-                              {"costs", queue.counting ? queue.counting->costs : hits},
-                              {"count_totals", queue.counting ? queue.counting->totals : hits}});
-    bindings = declared(pass, with_alpha_test(bindings, scene.triangles));
+                              Binding::if_used("costs", counting ? &queue.counting->costs : nullptr),
+                              Binding::if_used("count_totals", counting ? &queue.counting->totals : nullptr)});
+    bindings = with_alpha_test(bindings, scene.triangles);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

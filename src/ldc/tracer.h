@@ -45,15 +45,11 @@ enum class Edges : uint8_t {
     precise,  ///< in doubled precision: as a double-precision ray tracer sees them
 };
 
-/// The tables of a cube as shaders/cube_fetch.glsl binds them, in either order; `absent` stands in for those that it
-/// has not. And `others`.
-std::vector<Binding> sample_bindings(const Cubes& cubes, const Buffer& absent, std::span<const Binding> others);
-
 /// The constants of the traversal, which all shaders have that trace one ray at a time (trace, trace_pixels,
 /// trace_shadow*). `counting`: it is counted what rays cost.
 Constants traversal_constants(const Device& device, const TracedScene& scene, HitTest test, bool counting);
 
-/// The bindings of shaders/cube_fetch.glsl.
+/// The bindings of shaders/ldc/cube_fetch.glsl, and `others`.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);
 
 struct TraceOptions {

@@ -47,8 +47,6 @@ void VoxelOrder::clear(Commands& commands, const BuildState& state) {
 /// recorded between the lists' passes, where the GPU has room for both.
 void VoxelOrder::record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) {
     const LdcParams& p = state.params;
-    // Samples are in one of two forms; what stands in for the other is not touched by what runs beside.
-    const auto or_none = [&](const Buffer& buffer) -> const Buffer& { return buffer ? buffer : top_cells_; };
     if (state.cubes.has_patches() && state.cubes.layout().builder != BuilderKind::compute)
         commands.run(state.device.pass("ldc_corners"),
                      {{"positions", triangles.positions},
@@ -79,10 +77,10 @@ void VoxelOrder::record(Commands& commands, const BuildState& state, const Trian
                   {"node_cells", node_cells_},
                   {"positions", triangles.positions},
                   {"triangles", triangles.triangles},
-                  {"samples", or_none(state.cubes.samples)},
-                  {"sample_ids", or_none(state.cubes.sample_ids)},
-                  {"patches", or_none(state.cubes.patches)},
-                  {"corners", or_none(state.cubes.corners)},
+                  Binding::if_used("samples", state.cubes.samples),
+                  Binding::if_used("sample_ids", state.cubes.sample_ids),
+                  Binding::if_used("patches", state.cubes.patches),
+                  Binding::if_used("corners", state.cubes.corners),
                   {"bodies", state.cubes.body_table}},
                  state.params, groups_for(p.fragment_capacity, 128));
     commands.run(state.device.pass("ldc_top_boxes"),

@@ -54,13 +54,14 @@ void CostCounter::record_sums(Commands& commands, PathQueues& queues, const Buff
                               const std::vector<LevelParams>& params) const {
     for (size_t i = params.size(); i-- > 0;) {
         const PathLevel& level = queues.level(uint32_t(i));
-        const std::vector<Binding> bindings = {{"costs", costs_[i]},
-                                               {"next_costs", i + 1 < params.size() ? costs_[i + 1] : light_costs_},
-                                               {"light_costs", light_costs_},
-                                               {"nodes", level.nodes},
-                                               {"branches", level.branches},
-                                               {"queue", queues.counters()},
-                                               {"frame", frame}};
+        const std::vector<Binding> bindings = {
+            {"costs", costs_[i]},
+            Binding::if_used("next_costs", i + 1 < params.size() ? &costs_[i + 1] : nullptr),
+            {"light_costs", light_costs_},
+            {"nodes", level.nodes},
+            {"branches", level.branches},
+            {"queue", queues.counters()},
+            {"frame", frame}};
         commands.run(device_.pass("gather_costs"), bindings, params[i], groups_for(params[i].capacity, 64));
     }
     commands.run(device_.pass("accumulate_costs"),

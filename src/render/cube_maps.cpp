@@ -200,7 +200,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"nodes", level.nodes},
                                    {"triangle_objects", scene_.triangle_objects},
                                    {"objects", current_ ? with_probes_ : objects_.without_probes()},
-                                   {"probes", current_ ? *current_ : texels_[0]}}),
+                                   Binding::if_used("probes", current_)}),
                  params, groups);
     commands.run(device_.pass("cubemap_shadow"),
                  surface_bindings(scene_, frame,

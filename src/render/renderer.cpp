@@ -303,26 +303,25 @@ LevelParams Renderer::Impl::level_params(uint32_t level, uint32_t sample, uint32
 
 void Renderer::Impl::record_scatter(const LevelParams& p) {
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
-    // The camera's level makes its rays itself: what is bound for them is not read.
-    const bool camera = p.level == 0;
-    const PathLevel& source = camera ? next : level;
-    const std::vector<Binding> bindings = surface_bindings(scene, view.frame,
-                                                           {{"environment", scene.environment},
-                                                            {"rays", source.rays},
-                                                            {"states", source.states},
-                                                            {"hits", source.hits},
-                                                            {"nodes", level.nodes},
-                                                            {"branches", level.branches},
-                                                            {"queue", queues.counters()},
-                                                            {"next_rays", next.rays},
-                                                            {"next_states", next.states},
-                                                            {"next_skip", next.skip},
-                                                            {"lights", scene.lights},
-                                                            {"shadow_rays", queues.lights().rays},
-                                                            {"shadow_skip", queues.lights().skip},
-                                                            {"shadow_light", queues.lights().light},
-                                                            {"visibility", view.visibility},
-                                                            {"draws", scene.draw_table}});
+    const bool camera = p.level == 0;  // which makes its rays itself
+    const std::vector<Binding> bindings =
+        surface_bindings(scene, view.frame,
+                         {{"environment", scene.environment},
+                          Binding::if_used("rays", camera ? nullptr : &level.rays),
+                          Binding::if_used("states", camera ? nullptr : &level.states),
+                          Binding::if_used("hits", camera ? nullptr : &level.hits),
+                          {"nodes", level.nodes},
+                          {"branches", level.branches},
+                          {"queue", queues.counters()},
+                          {"next_rays", next.rays},
+                          {"next_states", next.states},
+                          {"next_skip", next.skip},
+                          {"lights", scene.lights},
+                          {"shadow_rays", queues.lights().rays},
+                          {"shadow_skip", queues.lights().skip},
+                          {"shadow_light", queues.lights().light},
+                          {"visibility", view.visibility},
+                          {"draws", scene.draw_table}});
     const Pass& pass = device.pass("scatter", {{"camera", camera}, {"by_number", camera && computes_view}});
     if (camera)
         commands.run(pass, bindings, p, groups_for(p.capacity, 64));
@@ -353,19 +352,19 @@ void Renderer::Impl::record_trace_of(uint32_t level) {
     RayQueue queue = queue_of(level);
     if (settings.tracer == Tracer::khr)
         return record_khr_trace(commands, device, *structures, scene.triangles, queue, hits, false);
-    const CountBuffers counting = counter ? counter->level(level) : CountBuffers{hits, hits};
-    if (counter) queue.counting = &counting;
+    std::optional<CountBuffers> counting;
+    if (counter) queue.counting = &counting.emplace(counter->level(level));
     record_trace(commands, device, traced(), queue, hits, {hit, settings.cubes.tolerance, false, Edges::single});
 }
 
 /// The same as record_shadows() for the device's own ray tracing.
 void Renderer::Impl::record_shadows_khr() {
     const LightQueue& lights = queues.lights();
-    const std::vector<Binding> bindings = surface_bindings(scene, view.frame,
-                                                           {{"shadow_rays", lights.rays},
-                                                            {"shadow_skip", lights.skip},
-                                                            {"shadow_light", lights.light},
-                                                            {"queue", queues.counters()}});
+    // What the shaders need of surfaces depends on whether light passes some and whether some have holes.
+    std::vector<Binding> bindings = if_used(surface_bindings(scene, view.frame, {}));
+    for (const Binding& binding : {Binding("shadow_rays", lights.rays), Binding("shadow_skip", lights.skip),
+                                   Binding("shadow_light", lights.light), Binding("queue", queues.counters())})
+        bindings.push_back(binding);
     const RayPass& pass =
         khr_pass(device, scene.has_glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
                  scene.has_glass ? KhrRays::nearest : KhrRays::occluded, scene.triangles.masks != nullptr);
@@ -377,7 +376,7 @@ void Renderer::Impl::record_shadows_khr() {
                          &queues.counters(),
                          PathQueues::groups_offset(QUEUE_GROUPS_LIGHT),
                          PathQueues::launch_offset(QUEUE_GROUPS_LIGHT)};
-    record_khr_rays(commands, device, pass, khr_bindings(pass, *structures, bindings), lights.capacity, queue);
+    record_khr_rays(commands, device, pass, khr_bindings(*structures, bindings), lights.capacity, queue);
 }
 
 /// The shadow rays of all levels.
@@ -388,13 +387,15 @@ void Renderer::Impl::record_shadows() {
     p.count = queue.capacity;
     p.tolerance = frame.tolerance;
     p.block = settings.cubes.layout.block;
-    const CountBuffers counting = counter ? counter->lights() : CountBuffers{queue.light, queue.light};
-    std::vector<Binding> bindings = cube_bindings(traced(), {{"shadow_rays", queue.rays},
-                                                             {"shadow_skip", queue.skip},
-                                                             {"shadow_light", queue.light},
-                                                             {"queue", queues.counters()},
-                                                             {"costs", counting.costs},
-                                                             {"count_totals", counting.totals}});
+    std::optional<CountBuffers> counting;
+    if (counter) counting.emplace(counter->lights());
+    std::vector<Binding> bindings =
+        cube_bindings(traced(), {{"shadow_rays", queue.rays},
+                                 {"shadow_skip", queue.skip},
+                                 {"shadow_light", queue.light},
+                                 {"queue", queues.counters()},
+                                 Binding::if_used("costs", counting ? &counting->costs : nullptr),
+                                 Binding::if_used("count_totals", counting ? &counting->totals : nullptr)});
     if (scene.has_glass) {
         for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
         bindings.push_back({"normals", scene.normals});
@@ -404,8 +405,7 @@ void Renderer::Impl::record_shadows() {
     const Pass& pass = device.pass(std::string(scene.has_glass ? "trace_shadow_glass" : "trace_shadow") +
                                        (settings.cubes.layout.by_pixel() ? "_pixels" : ""),
                                    traversal_constants(device, traced(), hit, counter != nullptr));
-    commands.run_indirect(pass, declared(pass, std::move(bindings)), p, queues.counters(),
-                          PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
+    commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(QUEUE_GROUPS_LIGHT));
 }
 
 /// Traces and shades the levels of the tree of rays, then all their shadow rays, and gathers the light. Where a queue

@@ -37,9 +37,8 @@ void record_view(Commands& commands, Device& device, const std::string& name, co
     RasterSetup setup;
     setup.front = name;
     const RasterPass& pass = device.raster_pass(masked ? name + "_masked" : name, setup);
-    for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
-    commands.draw(pass, declared(pass, std::move(bindings)), params, scene.draws, target.color, target.depth,
-                  target.visibility);
+    for (const Binding& binding : if_used(base_color_bindings(scene.base_colors))) bindings.push_back(binding);
+    commands.draw(pass, bindings, params, scene.draws, target.color, target.depth, target.visibility);
 }
 
 /// Camera rays and their hits, from the triangles in `target`: level 0 of the queues. `by_number`: ComputeView found

@@ -142,6 +142,50 @@ TEST_F(CommandsTest, BindingsAreChecked) {
     EXPECT_EQ(download<uint32_t>(b, 64), std::vector<uint32_t>(64, 6));
 }
 
+TEST_F(CommandsTest, BindingsThatAVariantDoesNotUseMayBeMissing) {
+    const Pass &without = device().pass("probe_variant", {{"sums", 0}}),
+               &with = device().pass("probe_variant", {{"sums", 1}});
+    const Buffer a = upload(std::vector<uint32_t>(64, 1)), extra = upload(std::vector<uint32_t>(64, 100));
+    commands().run(without, {{"data", a}, Binding::if_used("extra", nullptr)}, Add{64, 1}, {1});
+    commands().run(without, {{"data", a}, Binding::if_used("extra", Buffer())}, Add{64, 1}, {1});
+    commands().run(with, {{"data", a}, Binding::if_used("extra", extra)}, Add{64, 1}, {1});
+    commands().run(with, if_used(std::vector<Binding>{{"extra", extra}, {"data", a}, {"other", a}}), Add{64, 1}, {1});
+    EXPECT_EQ(download<uint32_t>(a, 64), std::vector<uint32_t>(64, 5));
+    EXPECT_EQ(download<uint32_t>(extra, 64), std::vector<uint32_t>(64, 100 + 4 + 5));
+
+    const std::string name = "probe_variant";
+    const Add p{64, 1};
+    expect_error([&] { commands().run(without, {{"data", a}}, p, {1}); }, {name, "2 bindings", "1"});
+    expect_error([&] { commands().run(without, {{"data", a}, {"extra", Buffer()}}, p, {1}); }, {name, "'extra'"});
+    expect_error(
+        [&] {
+            commands().run(without, {{"data", a}, Binding::if_used("extar", extra)}, p, {1});
+        },
+        {name, "2 bindings", "1"});
+    expect_error(
+        [&] {
+            commands().run(without, {{"data", a}, {"extra", a}, {"other", a}}, p, {1});
+        },
+        {name, "2 bindings", "3"});
+    EXPECT_EQ(download<uint32_t>(a, 64), std::vector<uint32_t>(64, 5));
+}
+
+TEST_F(CommandsTest, TheDummyIsNoHazardAndNoMemoryOfTheProgram) {
+    const Buffer a = upload(std::vector<uint32_t>(64, 1)), b = upload(std::vector<uint32_t>(64, 1));
+    const Pass& pass = device().pass("probe_variant", {{"sums", 0}});
+    const uint64_t held = device().allocated();
+    real_barrier = device().vk.vkCmdPipelineBarrier2;
+    device().vk.vkCmdPipelineBarrier2 = count_barrier;
+    commands().run(pass, {{"data", a}, Binding::if_used("extra", nullptr)}, Add{64, 1}, {1});
+    barriers = 0;
+    commands().run(pass, {{"data", b}, Binding::if_used("extra", nullptr)}, Add{64, 1}, {1});
+    EXPECT_EQ(barriers, 0) << "the shader may write what is bound to `extra`";
+    commands().submit();
+    device().vk.vkCmdPipelineBarrier2 = real_barrier;
+    EXPECT_EQ(device().allocated(), held);
+    for (const Allocation& piece : device().allocations()) EXPECT_EQ(piece.name.find("dummy"), std::string::npos);
+}
+
 TEST_F(CommandsTest, OrderOfBindingsDoesNotMatter) {
     const Buffer a = upload(std::vector<uint32_t>(64, 3)), b(device(), "b", 256);
     commands().run(device().pass("probe_rotate"), {{"to", b}, {"from", a}}, Rotate{64, 0, 1}, {1});
