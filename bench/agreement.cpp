@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "ldc/ray_sets.h"
+#include "ldc/trace_params.h"
 #include "loaders/load.h"
 #include "reference/planar_answer.h"
 #include "render/ray_scene.h"

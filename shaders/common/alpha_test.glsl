@@ -3,6 +3,8 @@
 #ifndef PEELRAY_ALPHA_TEST_GLSL
 #define PEELRAY_ALPHA_TEST_GLSL
 
+#include "common/material.h"
+
 #include "common/textures.glsl"
 
 /// An alpha this little below the cutoff reaches it: rounding makes no holes where both are equal.

@@ -18,7 +18,7 @@
 // An image of several layers, read texel by texel: `type` is texture2DArray or utexture2DArray.
 #define IMAGE(index, type, name) layout(set = 0, binding = index) uniform type name;
 
-// The pass's parameters: one struct from params.h.
+// The pass's parameters: one struct from a header that C++ includes, too.
 #define PARAMS(type) \
     layout(push_constant, scalar) uniform params_block { type params; };
 

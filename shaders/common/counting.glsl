@@ -1,6 +1,7 @@
 // Counting what rays cost (`--counters`); include before peelray/peelray.glsl. The including shader has the specialisation
 // constant `counting`: without it nothing of this is left, and the buffers are not touched.
 // Bindings COUNT_FIRST_BINDING and + 1.
+#include "ldc/trace_params.h"
 #ifndef COUNT_RAYS
 #define COUNT_RAYS 1  // that a thread traces side by side
 #endif

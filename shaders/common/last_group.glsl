@@ -3,6 +3,8 @@
 #ifndef PEELRAY_LAST_GROUP_GLSL
 #define PEELRAY_LAST_GROUP_GLSL
 
+#include "path/path_params.h"
+
 /// Is this the last workgroup of the dispatch to come here? To be asked by one thread of each, once its counters are written.
 bool isLastGroup() {
     memoryBarrierBuffer();

@@ -2,6 +2,8 @@
 #ifndef PEELRAY_PLACED_GLSL
 #define PEELRAY_PLACED_GLSL
 
+#include "common/instance.h"
+
 /// A corner relative to `from`, with a rounding as if it stood there in the file where its body was not moved. The same in
 /// every pass, bit by bit.
 vec3 placedFrom(GpuTransform to_world, vec3 p, vec3 from) {

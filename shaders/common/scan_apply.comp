@@ -1,7 +1,7 @@
 // Prefix sum of pairs, third pass: each element becomes the sum of all before it.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/scan_params.h"
 layout(local_size_x = 256) in;
 PARAMS(ScanParams)
 BUFFER(readonly, 0, uint, counters)

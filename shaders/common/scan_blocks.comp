@@ -1,7 +1,7 @@
 // Prefix sum of pairs, second pass: one workgroup turns the block sums into exclusive prefix sums and adds their total at the end.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/scan_params.h"
 layout(local_size_x = 256) in;
 PARAMS(ScanParams)
 BUFFER(, 0, uvec2, block_sums)

@@ -1,7 +1,7 @@
 // Prefix sum of pairs, first of three passes: the sum of each block of SCAN_BLOCK elements.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/scan_params.h"
 layout(local_size_x = 256) in;
 PARAMS(ScanParams)
 BUFFER(readonly, 0, uint, counters)

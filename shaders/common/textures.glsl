@@ -2,6 +2,8 @@
 #ifndef PEELRAY_TEXTURES_GLSL
 #define PEELRAY_TEXTURES_GLSL
 
+#include "common/material.h"
+
 #include "path/shading.glsl"
 
 uint wrapTexel(int i, uint size, uint mode) {

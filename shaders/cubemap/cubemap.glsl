@@ -6,6 +6,8 @@
 #ifndef PEELRAY_CUBEMAP_GLSL
 #define PEELRAY_CUBEMAP_GLSL
 
+#include "cubemap/cubemap_params.h"
+
 /// The direction to a place on a face, both coordinates in [-1, 1]; its largest component is ±1.
 vec3 cubeDirection(uint face, vec2 p) {
     const float side = (face & 1u) != 0u ? -1.0 : 1.0;

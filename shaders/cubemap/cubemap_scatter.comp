@@ -2,7 +2,10 @@
 // object. No ray is traced.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/material.h"
+#include "common/ray.h"
+#include "cubemap/cubemap_params.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0

@@ -1,7 +1,11 @@
 // The baseline's light: lamps and the sun through shadow maps, the diffuse sky unoccluded.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/material.h"
+#include "common/ray.h"
+#include "cubemap/cubemap_params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0

@@ -1,7 +1,10 @@
 // What a probe or a light sees: as visibility.vert, with some triangles left out.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "common/material.h"
+#include "cubemap/cubemap_params.h"
+#include "path/frame.h"
 PARAMS(MapVisibilityParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)

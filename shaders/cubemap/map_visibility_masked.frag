@@ -1,7 +1,7 @@
 // map_visibility.frag of scenes with masked materials: apart, since a shader that discards is tested for depth late.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "cubemap/cubemap_params.h"
 PARAMS(MapVisibilityParams)
 #include "view/masked_view.glsl"
 layout(location = 0) flat in uvec2 surface;

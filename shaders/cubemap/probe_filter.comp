@@ -3,7 +3,7 @@
 // with Filtered Importance Sampling, 2008).
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "cubemap/cubemap_params.h"
 layout(local_size_x = 64) in;
 PARAMS(MapParams)
 BUFFER(readonly, 0, uvec2, mips)

@@ -1,7 +1,7 @@
 // The next coarser level of a cube map: the mean of four lookups around each texel, across faces where need be.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "cubemap/cubemap_params.h"
 layout(local_size_x = 64) in;
 PARAMS(MapParams)
 BUFFER(, 0, uvec2, mips)

@@ -1,7 +1,10 @@
 // A rendered face becomes a face of a probe: radiance where there is geometry; the environment is added at the lookup, sharp.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "cubemap/cubemap_params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(MapParams)
 BUFFER(readonly, 0, Frame, frame)

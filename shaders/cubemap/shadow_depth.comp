@@ -1,7 +1,10 @@
 // Depths of a shadow map, from the rasterised triangles: each texel's own, on the triangle's plane.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "common/ray.h"
+#include "cubemap/cubemap_params.h"
+#include "path/frame.h"
 layout(local_size_x = 64) in;
 PARAMS(MapParams)
 BUFFER(readonly, 0, Frame, frame)

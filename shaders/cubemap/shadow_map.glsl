@@ -3,6 +3,8 @@
 #ifndef PEELRAY_SHADOW_MAP_GLSL
 #define PEELRAY_SHADOW_MAP_GLSL
 
+#include "cubemap/cubemap_params.h"
+
 /// Depth of the plane through `p` with normal `n` at the place q of a map; `p` relative to the eye, q in [-1, 1]².
 /// Infinite where the light's ray does not meet the plane's lit side.
 float planeDepth(GpuShadowMap map, vec3 p, vec3 n, vec2 q) {

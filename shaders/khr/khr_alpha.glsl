@@ -1,4 +1,5 @@
 // The alpha test in hit shaders. Bindings are those of scene_buffers.glsl from KHR_SCENE_FIRST_BINDING on. Include after khr_ray.glsl.
+#include "common/material.h"
 BUFFER(readonly, KHR_SCENE_FIRST_BINDING + 1, GpuMaterial, materials)
 BUFFER(readonly, KHR_SCENE_FIRST_BINDING + 2, GpuTexture, texture_infos)
 BUFFER(readonly, KHR_SCENE_FIRST_BINDING + 3, uint, texels)

@@ -1,7 +1,8 @@
 // The instances as an acceleration structure takes them.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "khr/khr_params.h"
 layout(local_size_x = 64) in;
 PARAMS(uint)
 BUFFER(readonly, 0, GpuInstance, instances)

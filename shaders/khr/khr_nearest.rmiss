@@ -2,7 +2,7 @@
 #version 460
 #extension GL_EXT_ray_tracing : require
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
 #include "khr/khr_ray.glsl"
 layout(location = KHR_NEAREST) rayPayloadInEXT KhrRay traced;
 

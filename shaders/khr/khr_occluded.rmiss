@@ -2,7 +2,6 @@
 #version 460
 #extension GL_EXT_ray_tracing : require
 #include "common/common.glsl"
-#include "common/params.h"
 #include "khr/khr_ray.glsl"
 layout(location = KHR_OCCLUDED) rayPayloadInEXT uint occluded;
 

@@ -1,5 +1,6 @@
 // One ray through the device's own ray tracing, with the meaning that peelrayTrace gives it. Include after khr_ray.glsl; ray
 // generation only.
+#include "common/ray.h"
 layout(set = 0, binding = 0) uniform accelerationStructureEXT structures;
 layout(location = KHR_NEAREST) rayPayloadEXT KhrRay traced;
 

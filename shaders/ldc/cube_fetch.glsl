@@ -1,4 +1,6 @@
 // The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9, FIRST + 48 and 49.
+#include "common/instance.h"
+#include "ldc/ldc_params.h"
 #ifndef CUBE_FIRST_BINDING
 #define CUBE_FIRST_BINDING 0
 #endif

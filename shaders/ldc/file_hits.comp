@@ -1,7 +1,9 @@
 // Hits as HITS.npy has them: triangles by their place in the file, weights of its second and third corner.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "common/ray.h"
+#include "ldc/trace_params.h"
 layout(local_size_x = 64) in;
 PARAMS(uint)
 BUFFER(readonly, 0, Hit, hits)

@@ -1,7 +1,9 @@
 // Places the cubes in the world: of each instance the way into its cube, and the box that holds it.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "ldc/ldc_params.h"
+#include "ldc/tree_params.h"
 #include "common/bounds.glsl"
 #include "peelray/precise.glsl"
 #include "ldc/tree.glsl"

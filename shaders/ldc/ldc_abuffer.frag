@@ -4,7 +4,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 PARAMS(LdcParams)
 BUFFER(, 2, LdcCounters, counters)
 BUFFER(readonly, 3, LdcBody, bodies)

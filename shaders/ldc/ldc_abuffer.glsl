@@ -1,4 +1,5 @@
 // Fragments append themselves: what ldc_abuffer.frag and ldc_abuffer_plain.frag share. Include after reserve().
+#include "ldc/ldc_params.h"
 void main() {
     // Helper invocations, which cover nothing, must reserve nothing. (Not by gl_HelperInvocation: Mesa's lavapipe 22.3 lacks it.)
     if (gl_SampleMaskIn[0] == 0) return;

@@ -1,7 +1,7 @@
 // The a-buffer on devices whose fragments know no subgroups: an atomic each.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 PARAMS(LdcParams)
 BUFFER(, 2, LdcCounters, counters)
 BUFFER(readonly, 3, LdcBody, bodies)

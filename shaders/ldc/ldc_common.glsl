@@ -3,7 +3,7 @@
 #define PEELRAY_LDC_COMMON_GLSL
 
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 #include "peelray/peelray_sample.glsl"
 #include "peelray/precise.glsl"
 

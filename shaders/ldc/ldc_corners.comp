@@ -1,7 +1,7 @@
 // The corners of all triangles for `exact` hits by voxel, where the rasteriser does not leave them.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 128) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)

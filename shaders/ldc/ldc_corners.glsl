@@ -2,6 +2,8 @@
 #ifndef PEELRAY_LDC_CORNERS_GLSL
 #define PEELRAY_LDC_CORNERS_GLSL
 
+#include "ldc/ldc_params.h"
+
 /// From the corners in the body's space.
 LdcCorners ldcPackCorners(CubeGrid grid, vec3 a, vec3 b, vec3 c, vec3 normal) {
     a -= grid.origin;

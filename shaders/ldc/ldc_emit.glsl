@@ -2,6 +2,8 @@
 #ifndef PEELRAY_LDC_EMIT_GLSL
 #define PEELRAY_LDC_EMIT_GLSL
 
+#include "ldc/ldc_params.h"
+
 #include "ldc/ldc_common.glsl"
 
 shared uint emit_count;

@@ -1,7 +1,7 @@
 // The grid of every body of a build, from its bounds, and where its parts of the tables begin. One workgroup.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 #include "common/bounds.glsl"
 #include "ldc/ldc_grid.h"
 layout(local_size_x = 64) in;

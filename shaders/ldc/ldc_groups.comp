@@ -1,7 +1,7 @@
 // Workgroups of the passes whose work is counted on the GPU.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 1) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)

@@ -1,7 +1,7 @@
 // One step of a log-step maximum: each workgroup leaves the largest of 1024 values.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 256) in;
 PARAMS(MaxParams)
 BUFFER(, 0, uint, layer_counts)

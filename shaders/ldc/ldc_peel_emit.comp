@@ -1,7 +1,7 @@
 // Appends what a pass of depth peeling left in its targets: one thread per pixel of the three LDIs.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)

@@ -2,7 +2,7 @@
 // all if there are more layers than passes.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 64) in;
 PARAMS(PeelPlanParams)
 BUFFER(, 0, LdcCounters, counters)

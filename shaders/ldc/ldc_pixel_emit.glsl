@@ -3,6 +3,8 @@
 #ifndef PEELRAY_LDC_PIXEL_EMIT_GLSL
 #define PEELRAY_LDC_PIXEL_EMIT_GLSL
 
+#include "ldc/ldc_params.h"
+
 #include "ldc/ldc_bodies.glsl"
 #include "ldc/ldc_common.glsl"
 

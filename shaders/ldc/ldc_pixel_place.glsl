@@ -1,5 +1,6 @@
 // Writing a sample of the by-pixel order to its final place, counted from the build's first sample.
 // With the constant `streams`: fragments of drawn streams, whose triangles are gone.
+#include "ldc/ldc_params.h"
 #include "ldc/ldc_projected.glsl"
 
 void placePixelSample(uint at, uint fragment) {

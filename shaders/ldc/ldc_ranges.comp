@@ -2,7 +2,7 @@
 // its samples can have. One thread per block.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)

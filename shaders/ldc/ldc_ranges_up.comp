@@ -1,7 +1,7 @@
 // One more level of the min/max pyramid (`--traversal mipmap`): a cell covers 2 x 2 of the level below. One thread per cell.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LdcParams)
 BUFFER(readonly, 0, LdcCounters, counters)

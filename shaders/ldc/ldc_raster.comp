@@ -1,7 +1,7 @@
 // Rasterises small triangles, one thread each, into the LDIs that capture them; cuts the large ones into blocks of pixels.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
 layout(constant_id = 1) const uint small_pixels = 48u;  // of a triangle's bounds that a thread goes through by itself

@@ -1,7 +1,7 @@
 // Rasterises the blocks of large triangles: one workgroup per block, up to four pixels per thread.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(local_size_x = 256) in;
 layout(constant_id = 0) const bool masked = false;  // as in ldc_raster.comp
 PARAMS(LdcParams)

@@ -2,7 +2,7 @@
 // band into two or three.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 9) out;
 PARAMS(LdcParams)

@@ -2,7 +2,7 @@
 // away what the LDI of this instance does not capture.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)
 BUFFER(readonly, 1, uvec3, triangles)

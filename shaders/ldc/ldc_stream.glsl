@@ -4,7 +4,7 @@
 #define PEELRAY_LDC_STREAM_GLSL
 
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/ldc_params.h"
 PARAMS(LdcParams)
 BUFFER(, 2, LdcCounters, counters)
 BUFFER(readonly, 3, LdcBody, bodies)

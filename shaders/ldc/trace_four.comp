@@ -1,7 +1,8 @@
 // Traces a queue of rays in the cubes, four rays a thread (by pixel only).
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "ldc/trace_params.h"
 #define COUNT_RAYS 4
 #define PEELRAY_ONLY_PIXELS
 #include "ldc/trace_queue.glsl"

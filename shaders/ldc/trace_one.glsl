@@ -1,6 +1,7 @@
 // Traces a queue of rays in the cubes, a ray a thread.
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "ldc/trace_params.h"
 #include "ldc/trace_queue.glsl"
 layout(constant_id = 6) const uint batch = 0u;  // PEELRAY_ONE, ...
 layout(constant_id = 7) const uint instance_count = 0u;  // up to 8; 0: any number

@@ -1,4 +1,6 @@
 // What the passes that trace a queue of rays in the cubes share.
+#include "common/ray.h"
+#include "ldc/trace_params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool any_hit = false;
 layout(constant_id = 1) const uint hit_test = 0u;  // PEELRAY_EXACT, ...

@@ -1,7 +1,7 @@
 // Sorts the instances into buckets along the Morton curve: first, which bucket, and how many are in each.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 #include "common/bounds.glsl"
 #include "ldc/tree.glsl"
 layout(local_size_x = 64) in;

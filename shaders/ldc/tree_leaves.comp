@@ -1,7 +1,7 @@
 // The lowest level of the hierarchy: the instances' boxes along the Morton curve, those of a bucket by their number.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 #include "ldc/tree.glsl"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)

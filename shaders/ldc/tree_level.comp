@@ -1,7 +1,7 @@
 // A higher level of the hierarchy: the boxes of eight boxes each.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 #include "ldc/tree.glsl"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)

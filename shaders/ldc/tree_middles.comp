@@ -1,7 +1,7 @@
 // The box of the middles of all instances' boxes.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 #include "common/bounds.glsl"
 #include "ldc/tree.glsl"
 layout(local_size_x = 256) in;

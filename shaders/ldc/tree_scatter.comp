@@ -1,7 +1,7 @@
 // Puts every instance into its bucket, in the order in which the atomics happened to run.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 layout(local_size_x = 64) in;
 PARAMS(TreeParams)
 BUFFER(readonly, 0, TreeKey, tree_keys)

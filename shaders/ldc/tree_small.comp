@@ -1,7 +1,7 @@
 // The hierarchy over up to TREE_SMALL instances, in one workgroup.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/tree_params.h"
 #include "ldc/tree.glsl"
 layout(local_size_x = 256) in;
 PARAMS(TreeParams)

@@ -2,7 +2,8 @@
 // 3.7.2.2 and 3.7.3.3). The bodies' bounds grow with them. A workgroup's vertices are of one piece.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "motion/motion_params.h"
 layout(local_size_x = 64) in;
 PARAMS(DeformParams)
 BUFFER(readonly, 0, DeformPiece, pieces)

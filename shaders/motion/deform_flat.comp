@@ -1,7 +1,7 @@
 // Normals of deformed triangles that are flat-shaded: the triangles' own. No vertex of theirs is shared.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "motion/motion_params.h"
 layout(local_size_x = 64) in;
 PARAMS(DeformParams)
 BUFFER(readonly, 0, DeformPiece, pieces)

@@ -1,7 +1,8 @@
 // Where the bodies of a swarm are.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "motion/motion_params.h"
 #include "motion/swarm_motion.h"
 layout(local_size_x = 64) in;
 PARAMS(SwarmParams)

@@ -1,7 +1,8 @@
 // Where things that swim stand: on the mean height and slope of the water under them.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "motion/motion_params.h"
 layout(local_size_x = 64) in;
 PARAMS(WaterParams)
 BUFFER(readonly, 0, float, heights)

@@ -1,7 +1,7 @@
 // One step of the wave equation on a grid of heights (Water of src/scene/generated.h): velocities first, then heights.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "motion/motion_params.h"
 layout(local_size_x = 64) in;
 PARAMS(WaterParams)
 BUFFER(readonly, 0, float, heights)

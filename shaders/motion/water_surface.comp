@@ -1,7 +1,7 @@
 // The vertices of a water surface in this moment.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "motion/motion_params.h"
 layout(local_size_x = 64) in;
 PARAMS(WaterParams)
 BUFFER(readonly, 0, float, heights)

@@ -2,7 +2,8 @@
 // a display shows: exposure, tone curve and sRGB encoding.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(AccumulateParams)
 BUFFER(readonly, 0, Frame, frame)

@@ -1,7 +1,8 @@
 // Adds what a band's rays cost to the sums of its pixels; not if a queue overflowed, for then the band is done again.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 BUFFER(readonly, 0, Frame, frame)

@@ -2,7 +2,8 @@
 // normal, base colour, position.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0

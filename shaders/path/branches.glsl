@@ -2,6 +2,10 @@
 #ifndef PEELRAY_BRANCHES_GLSL
 #define PEELRAY_BRANCHES_GLSL
 
+#include "common/material.h"
+#include "path/frame.h"
+#include "path/path_params.h"
+
 struct Branch {
     vec3 weight;      ///< 0: none
     vec3 direction;

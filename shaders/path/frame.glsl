@@ -4,6 +4,11 @@
 #ifndef PEELRAY_FRAME_GLSL
 #define PEELRAY_FRAME_GLSL
 
+#include "common/instance.h"
+#include "common/material.h"
+#include "common/ray.h"
+#include "path/path_params.h"
+
 #include "common/placed.glsl"
 #include "path/shading.glsl"
 #include "common/textures.glsl"

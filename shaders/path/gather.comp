@@ -1,7 +1,7 @@
 // Adds the light of a level's children to its nodes: from the deepest level back to the first after the camera's.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 BUFFER(, 0, PathNode, nodes)

@@ -2,6 +2,8 @@
 #ifndef PEELRAY_GATHER_GLSL
 #define PEELRAY_GATHER_GLSL
 
+#include "path/path_params.h"
+
 /// A node's radiance and what arrives along its shadow rays, always added in the same order.
 vec3 litRadiance(PathNode node) {
     vec3 sum = node.radiance;

@@ -1,7 +1,8 @@
 // Adds what a level's shadow rays and the rays of its children cost to its own: from the deepest level back to the camera.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 layout(local_size_x = 64) in;
 PARAMS(LevelParams)
 BUFFER(, 0, PeelrayCounts, costs)

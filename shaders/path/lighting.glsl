@@ -2,6 +2,9 @@
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
+#include "common/material.h"
+#include "path/frame.h"
+
 /// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
 vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
     distance = uintBitsToFloat(0x7f800000u);

@@ -3,7 +3,8 @@
 // registers, which costs less than reading it back.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/frame.h"
+#include "path/path_params.h"
 PARAMS(RaySetupParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec4, aovs)  // as aov.comp leaves them

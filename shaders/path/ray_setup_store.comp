@@ -1,7 +1,7 @@
 // The targets of ray_setup, for the host: four vec4 per pixel.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "path/frame.h"
 layout(local_size_x = 64) in;
 PARAMS(uint)  // pixels
 BUFFER(readonly, 0, Frame, frame)

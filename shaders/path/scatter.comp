@@ -2,7 +2,11 @@
 // may reach it, and the tree's node. Misses see the environment. The camera's level makes its rays itself, from what the pixels see.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/material.h"
+#include "common/ray.h"
+#include "path/frame.h"
+#include "path/path_params.h"
+#include "view/view_params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl

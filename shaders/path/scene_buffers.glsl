@@ -1,5 +1,8 @@
 // The scene's buffers at bindings SCENE_FIRST_BINDING ...; positions, triangles and instances come with
 // cube_fetch.glsl or here.
+#include "common/instance.h"
+#include "common/material.h"
+#include "path/frame.h"
 BUFFER(readonly, SCENE_FIRST_BINDING + 0, Frame, frame)
 BUFFER(readonly, SCENE_FIRST_BINDING + 1, GpuMaterial, materials)
 BUFFER(readonly, SCENE_FIRST_BINDING + 2, GpuTexture, texture_infos)

@@ -4,6 +4,11 @@
 #ifndef PEELRAY_TRACE_SHADOW_GLSL
 #define PEELRAY_TRACE_SHADOW_GLSL
 
+#include "common/material.h"
+#include "common/ray.h"
+#include "ldc/trace_params.h"
+#include "path/path_params.h"
+
 BUFFER_ALIGNED(readonly, SHADOW_FIRST_BINDING + 0, Ray, shadow_rays)
 BUFFER(readonly, SHADOW_FIRST_BINDING + 1, SurfaceId, shadow_skip)
 BUFFER(, SHADOW_FIRST_BINDING + 2, vec3, shadow_light)

@@ -1,7 +1,7 @@
 // Traces the queue of shadow rays in the cubes, through surfaces that let light pass: apart, since what it needs of the materials
 // would slow down the tracing of scenes without any.
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/trace_params.h"
 layout(local_size_x = 64) in;
 #include "path/trace_shadow_options.glsl"
 PARAMS(TraceParams)

@@ -1,6 +1,6 @@
 // Traces the queue of shadow rays in the cubes.
 #include "common/common.glsl"
-#include "common/params.h"
+#include "ldc/trace_params.h"
 layout(local_size_x = 64) in;
 #include "path/trace_shadow_options.glsl"
 PARAMS(TraceParams)

@@ -1,5 +1,6 @@
 // The camera's rays and the order of a band's pixels: 8x8 tiles, row by row, so that neighbours in the queue are neighbours
 // in the picture.
+#include "common/ray.h"
 
 /// Pixel of record `index` of a band; it may lie outside the picture.
 uvec2 recordPixel(uint index, uint first_row) {

@@ -2,6 +2,8 @@
 #ifndef PEELRAY_CAMERA_HIT_GLSL
 #define PEELRAY_CAMERA_HIT_GLSL
 
+#include "common/ray.h"
+
 #include "peelray/intersect.glsl"
 #include "common/placed.glsl"
 

@@ -3,6 +3,9 @@
 #ifndef PEELRAY_CAMERA_START_GLSL
 #define PEELRAY_CAMERA_START_GLSL
 
+#include "common/ray.h"
+#include "path/path_params.h"
+
 /// `by_number`: see seenAt().
 void cameraStart(uvec2 pixel, vec2 jitter, bool by_number, out Ray ray, out RayState state, out Hit hit) {
     ray = cameraRay(vec2(pixel) + jitter);

@@ -3,6 +3,9 @@
 #ifndef PEELRAY_DRAWN_GLSL
 #define PEELRAY_DRAWN_GLSL
 
+#include "common/ray.h"
+#include "view/view_params.h"
+
 SurfaceId drawnSurface(uint number) {
     uint low = 0u, high = frame[0].draws - 1u;  // the last draw that begins at or before the number
     while (low < high) {

@@ -1,4 +1,7 @@
 // What fragments of views with masked materials share: bindings as in the vertex shaders.
+#include "common/instance.h"
+#include "common/ray.h"
+#include "path/frame.h"
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)
 BUFFER(readonly, 2, uvec3, triangles)

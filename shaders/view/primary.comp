@@ -2,7 +2,11 @@
 // frame itself does without (scatter.comp).
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "common/ray.h"
+#include "path/frame.h"
+#include "path/path_params.h"
+#include "view/view_params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool by_number = false;  // see seen.glsl
 PARAMS(LevelParams)

@@ -2,6 +2,8 @@
 #ifndef PEELRAY_SEEN_GLSL
 #define PEELRAY_SEEN_GLSL
 
+#include "common/ray.h"
+
 #include "view/drawn.glsl"
 
 /// Triangle NO_TRIANGLE: nothing. `by_number`: the view was made by compute (view_triangles.comp), else by the rasteriser.

@@ -1,5 +1,9 @@
 // What the passes share that find by compute which triangle each pixel of a view sees. A pixel's key is the bits of the depth along
 // its ray, then the drawn triangle's number: the least of all is what it sees, whatever the order of the threads.
+#include "common/instance.h"
+#include "common/ray.h"
+#include "path/frame.h"
+#include "view/view_params.h"
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 layout(constant_id = 0) const bool masked = false;  // the scene has masked materials

@@ -1,7 +1,8 @@
 // Large triangles of a view: sixteen threads for each block that they may touch, four pixels each.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "path/path_params.h"
 layout(local_size_x = 256) in;
 #include "view/view.glsl"
 

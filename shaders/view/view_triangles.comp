@@ -2,7 +2,8 @@
 // ones are queued in blocks of pixels.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/ray.h"
+#include "path/path_params.h"
 layout(local_size_x = 256) in;
 #include "view/view.glsl"
 #include "common/bounds.glsl"

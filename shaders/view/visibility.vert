@@ -1,7 +1,9 @@
 // Primary visibility: every triangle of every instance, drawn with both numbers. Positions relative to the eye, reversed depth.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
+#include "common/instance.h"
+#include "path/frame.h"
+#include "view/view_params.h"
 PARAMS(VisibilityParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, vec3, positions)

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "common/params.h"
+#include "common/ray.h"
+#include "ldc/trace_params.h"
 
 namespace peelray {
 

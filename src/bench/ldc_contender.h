@@ -36,7 +36,7 @@ class LdcContender : public GpuContender {
     float voxel_ = 0;            ///< the largest
 };
 
-/// Heights that planar hits give their rays, in voxels (surface_offset in shaders/params.h).
+/// Heights that planar hits give their rays, in voxels (Frame::surface_offset).
 inline constexpr float kPlanarOffset = 0.7f;
 
 }  // namespace peelray

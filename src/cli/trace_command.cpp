@@ -7,6 +7,7 @@
 #include "cli/messages.h"
 #include "cli/outputs.h"
 #include "cli/stats_json.h"
+#include "common/ray.h"
 #include "image/image.h"
 #include "image/npy.h"
 #include "loaders/load.h"

@@ -1,4 +1,5 @@
 #include "khr/structures.h"
+#include "khr/khr_params.h"
 
 #include <algorithm>
 

@@ -1,4 +1,5 @@
 #include "khr/tracer.h"
+#include "khr/khr_params.h"
 
 namespace peelray {
 

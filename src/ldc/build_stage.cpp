@@ -1,4 +1,5 @@
 #include "ldc/build_stage.h"
+#include "common/scan_params.h"
 
 #include <algorithm>
 

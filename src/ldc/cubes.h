@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "common/params.h"
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
 #include "ldc/base_color.h"
+#include "ldc/ldc_params.h"
 #include "settings/choices.h"
 
 namespace peelray {

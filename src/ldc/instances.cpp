@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "common/scan_params.h"
 
 namespace peelray {
 namespace {

@@ -1,7 +1,9 @@
 // Bodies placed in the world, and the hierarchy over their boxes.
 #pragma once
 
+#include "common/instance.h"
 #include "ldc/cubes.h"
+#include "ldc/tree_params.h"
 
 namespace peelray {
 

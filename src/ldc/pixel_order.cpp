@@ -1,4 +1,5 @@
 #include "ldc/pixel_order.h"
+#include "common/scan_params.h"
 
 #include <algorithm>
 #include <cstddef>

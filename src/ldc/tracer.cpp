@@ -1,4 +1,5 @@
 #include "ldc/tracer.h"
+#include "ldc/trace_params.h"
 
 #include <cassert>
 

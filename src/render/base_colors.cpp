@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/params.h"
+#include "common/material.h"
 
 namespace peelray {
 namespace {

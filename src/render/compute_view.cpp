@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "view/view_params.h"
 
 namespace peelray {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "base/ray_costs.h"
 #include "gpu/commands.h"
+#include "ldc/trace_params.h"
 #include "ldc/tracer.h"
 #include "render/path_queues.h"
 

@@ -1,7 +1,7 @@
 // The views through the six faces of a cube, in the order and orientation of shaders/cubemap.glsl.
 #pragma once
 
-#include "common/params.h"
+#include "path/frame.h"
 
 namespace peelray {
 

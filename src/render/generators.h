@@ -3,6 +3,7 @@
 
 #include "assembly/assembly.h"
 #include "ldc/instances.h"
+#include "motion/motion_params.h"
 
 namespace peelray {
 

@@ -8,6 +8,7 @@
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
 #include "scene/picture.h"
+#include "view/view_params.h"
 
 namespace peelray {
 namespace {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "assembly/assembly.h"
-#include "common/params.h"
+#include "common/instance.h"
 #include "ldc/instances.h"
+#include "path/frame.h"
 #include "render/deformer.h"
 #include "render/generators.h"
 #include "scene/environment.h"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cubemap/cubemap_params.h"
 #include "render/view_passes.h"
 #include "scene/picture.h"
 

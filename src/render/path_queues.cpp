@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "common/ray.h"
 
 namespace peelray {
 namespace {

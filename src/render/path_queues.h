@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "common/params.h"
 #include "gpu/buffer.h"
+#include "path/path_params.h"
 
 namespace peelray {
 

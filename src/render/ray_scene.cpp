@@ -1,5 +1,6 @@
 #include "render/ray_scene.h"
 
+#include "common/ray.h"
 #include "khr/tracer.h"
 #include "render/base_colors.h"
 #include "render/structure_bodies.h"

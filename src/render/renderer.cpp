@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "common/ray.h"
 #include "khr/tracer.h"
 #include "motion/bounds.h"
 #include "render/compute_view.h"
@@ -12,6 +13,7 @@
 #include "render/time_table.h"
 #include "render/transforms.h"
 #include "settings/limits.h"
+#include "view/view_params.h"
 
 namespace peelray {
 namespace {

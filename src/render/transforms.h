@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "assembly/assembly.h"
-#include "common/params.h"
+#include "common/instance.h"
 
 namespace peelray {
 

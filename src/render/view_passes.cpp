@@ -1,4 +1,5 @@
 #include "render/view_passes.h"
+#include "common/ray.h"
 
 namespace peelray {
 

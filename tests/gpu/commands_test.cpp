@@ -1,6 +1,8 @@
 // Recording: derived barriers, checked bindings, indirect runs, timestamps, pools that grow.
 #include <numeric>
 
+#include "common/scan_params.h"
+#include "ldc/ldc_params.h"
 #include "probe_fixture.h"
 
 namespace peelray {

@@ -3,7 +3,6 @@
 
 #include <random>
 
-#include "common/params.h"
 #include "gpu/device_fixture.h"
 #include "gpu/shader_table.h"
 

@@ -1,4 +1,5 @@
 // The prefix sum of pairs: three passes over any number of elements, counted on the host or on the GPU.
+#include "common/scan_params.h"
 #include "probe_fixture.h"
 
 namespace peelray {

@@ -1,5 +1,7 @@
 // Hits of the device's own ray tracing on whole scenes: those of the cubes and of the oracle.
+#include "common/ray.h"
 #include "khr_fixture.h"
+#include "ldc/trace_params.h"
 #include "loaders/load.h"
 #include "motion/motion.h"
 #include "ray_sets.h"

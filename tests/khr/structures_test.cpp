@@ -1,6 +1,7 @@
 // Rays with a known answer in a few squares: what counts as a hit, and structures that follow what moves.
 #include <cmath>
 
+#include "common/ray.h"
 #include "khr/tracer.h"
 #include "khr_fixture.h"
 #include "single_cube.h"

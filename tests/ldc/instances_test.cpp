@@ -4,6 +4,7 @@
 #include "../gpu/device_fixture.h"
 #include "builtin/shapes.h"
 #include "ldc/cube_builder.h"
+#include "ldc/trace_params.h"
 #include "ldc/tracer.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"

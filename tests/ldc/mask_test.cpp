@@ -4,6 +4,7 @@
 
 #include "../gpu/device_fixture.h"
 #include "decoded_cube.h"
+#include "ldc/trace_params.h"
 #include "loaders/load.h"
 #include "motion/motion.h"
 #include "ray_sets.h"

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "common/params.h"
+#include "common/ray.h"
 #include "reference/oracle.h"
 #include "scene/scene.h"
 

@@ -1,6 +1,7 @@
 // A body with its cube on the device, ready to trace.
 #pragma once
 
+#include "common/ray.h"
 #include "scene/scene.h"
 #include "single_cube.h"
 

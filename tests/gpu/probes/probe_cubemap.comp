@@ -1,7 +1,6 @@
 // A cube map whose texels hold their own directions.
 #version 460
 #include "common/common.glsl"
-#include "common/params.h"
 vec4 ownDirection(uint index);
 #define CUBE_TEXEL(index) ownDirection(index)
 #include "cubemap/cubemap.glsl"

@@ -1,0 +1,63 @@
+// A frame: camera, lights and all else that does not change from pass to pass (src/render).
+#ifndef PEELRAY_FRAME_H
+#define PEELRAY_FRAME_H
+
+#include "common/shared.h"
+
+#ifdef __cplusplus
+namespace peelray {
+#endif
+
+struct GpuLight {
+    vec3 position;
+    uint kind;       ///< 0 directional, 1 point, 2 spot
+    vec3 direction;  ///< unit, the way the light travels
+    float range;     ///< world units
+    vec3 color;
+    float cone_scale;  ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
+    float cone_offset;
+};
+SHARED_SIZE(GpuLight, 52);
+
+/// Everything of a frame that does not change from pass to pass.
+struct Frame {
+    PeelrayTree tree;
+    // Camera: ray through the pixel position p: forward + right * (2 p.x/width - 1) + up * (1 - 2 p.y/height).
+    vec3 eye;
+    float near;  ///< depth 1 of the reversed depth buffer
+    vec3 right;  ///< times tan(half the horizontal field of view); orthographic: times half the width
+    uint orthographic;
+    vec3 up;
+    float far;     ///< orthographic only
+    vec3 forward;  ///< unit
+    uint width;
+    uint height;
+    uint row_pixels;  ///< width rounded up to 8: records of one row of 8x8 tiles / 8
+    uint lights;
+    // Environment.
+    uvec2 env_size;
+    uint env_levels;
+    float sun_cosine;    ///< of the sun's angular radius; 2: no sun disc
+    vec3 sun_direction;  ///< to the sun
+    vec3 sun_radiance;
+    uint effects;          ///< EFFECT_*
+    vec3 irradiance[9];    ///< spherical harmonics of the environment's irradiance, band by band
+    float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of
+                           ///< exact hits)
+    uint spp;
+    uint last_level;    ///< level whose hits spawn no more rays
+    float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
+    float tolerance;    ///< of `tolerance` hits, world units; else 0
+    uvec2 block;        ///< pixels of a block of two_level
+    uint draws;         ///< GpuDraw entries
+};
+SHARED_SIZE(Frame, 300);
+#define EFFECT_REFLECTION 1u
+#define EFFECT_REFRACTION 2u
+#define EFFECT_SHADOW 4u
+#define EFFECT_AMBIENT 8u
+
+#ifdef __cplusplus
+}  // namespace peelray
+#endif
+#endif

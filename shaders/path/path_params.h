@@ -1,0 +1,98 @@
+// The tree of rays, its queues, and the passes from scatter to accumulate (src/render).
+#ifndef PEELRAY_PATH_PARAMS_H
+#define PEELRAY_PATH_PARAMS_H
+
+#include "common/shared.h"
+
+#ifdef __cplusplus
+namespace peelray {
+#endif
+
+/// What a ray carries beside its geometry.
+struct RayState {
+    vec3 weight;  ///< share of the pixel's light that comes along this ray
+    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_SEES_SUN
+    uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
+};
+SHARED_SIZE(RayState, 20);
+#define MEDIUM_NONE 0x7fffffffu
+#define RAY_SEES_SUN 0x80000000u
+
+/// One hit of the tree of rays below a pixel: its radiance is its own, what arrives along its shadow rays and that of
+/// its children, weighted.
+struct PathNode {
+    vec3 radiance;
+    uint first_light;  ///< entry of the queue of shadow rays
+    uint flags;        ///< NODE_*, and how many entries are its own
+};
+SHARED_SIZE(PathNode, 20);
+#define NODE_LIGHTS 0x3fffffffu
+#define NODE_SURFACE 0x40000000u   // not the sky
+#define NODE_BRANCHES 0x80000000u  // it has children
+
+/// The children of a node: places in the next level.
+struct PathBranches {
+    vec3 weight0;
+    uint child0;
+    vec3 weight1;
+    uint child1;
+};
+SHARED_SIZE(PathBranches, 32);
+#define NO_CHILD 0xffffffffu
+
+/// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
+#define QUEUE_LEVELS 17u
+#define QUEUE_REFLECTION 17u
+#define QUEUE_REFRACTION 18u
+#define QUEUE_LIGHT 19u        // shadow rays, those of the sky's light included
+#define QUEUE_AMBIENT 20u      // of them: the sky's
+#define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is done again then
+#define QUEUE_VIEW_BLOCKS 22u  // of large triangles
+#define QUEUE_FINISHED 23u     // workgroups of the pass that runs
+#define QUEUE_COUNTERS 24u
+/// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
+#define QUEUE_GROUPS QUEUE_COUNTERS
+#define QUEUE_GROUPS_VIEW 17u
+#define QUEUE_GROUPS_LIGHT 18u
+/// Then as many rays, for launching them: three each.
+#define QUEUE_LAUNCHES (QUEUE_GROUPS + 3u * 19u)
+#define QUEUE_WORDS (QUEUE_LAUNCHES + 3u * 19u)
+#define OVERFLOW_PATHS 1u  // a level's rays
+#define OVERFLOW_VIEW 2u   // blocks
+#define OVERFLOW_LIGHT 4u  // shadow rays
+
+/// Parameters of the passes that work on one level of the tree of rays.
+struct LevelParams {
+    uint level;
+    uint capacity;       ///< room in this level's queue
+    uint next_capacity;  ///< room in the next level's queue
+    uint sample_index;
+    vec2 jitter;
+    uint first_row;       ///< of the band, a multiple of 8
+    uint light_capacity;  ///< room in the queue of shadow rays
+};
+SHARED_SIZE(LevelParams, 32);
+
+struct AccumulateParams {
+    uint capacity;        ///< level 0's nodes
+    uint next_capacity;   ///< room for nodes of level 1
+    uint light_capacity;  ///< room in the queue of shadow rays
+    uint first_row;       ///< of the band, a multiple of 8
+    uint sample_index;
+    uint last;    ///< 1: the last sample, the picture is encoded
+    float scale;  ///< exposure / samples
+    uint curve;   ///< 0 none, 1 ACES, 2 neutral
+};
+SHARED_SIZE(AccumulateParams, 32);
+
+/// Parameters of the ray_setup passes: the box of the scene.
+struct RaySetupParams {
+    vec3 lower;
+    vec3 upper;
+};
+SHARED_SIZE(RaySetupParams, 24);
+
+#ifdef __cplusplus
+}  // namespace peelray
+#endif
+#endif
