@@ -6,9 +6,7 @@
 #include "common/material.h"
 
 #include "common/textures.glsl"
-
-/// An alpha this little below the cutoff reaches it: rounding makes no holes where both are equal.
-const float ALPHA_ROUNDING = 1e-6;
+#include "path/shading_numbers.h"
 
 /// May the triangle have holes?
 bool alphaMasked(uint triangle) { return materials[triangle_materials[triangle]].alpha_cutoff > 0.0; }

@@ -13,9 +13,6 @@
 #include "path/shading.glsl"
 #include "common/textures.glsl"
 
-/// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
-const float FLATTEST_START = 4.0;
-
 /// What shading needs to know of a hit.
 struct Surface {
     vec3 position;
@@ -28,9 +25,6 @@ struct Surface {
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
 };
-
-/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands for.
-const float STRAY_NORMAL = 0.1;
 
 /// How far the position is lifted to the plane through a corner along the corner's normal; `p`: from the corner.
 vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
@@ -73,7 +67,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     uv = clamp(uv, vec2(0), vec2(1));  // planar hits may lie beside their triangle
     const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
     s.position = a * weights.x + b * weights.y + c * weights.z;
-    s.error = largest(reach) * 1e-6;
+    s.error = largest(reach) * POSITION_ROUNDING;
     s.offset = frame[0].surface_offset * instances[instance].voxel + frame[0].tolerance;
     const vec3 cross_product = turned * cross(b - a, c - a);
     const float size = length(cross_product);
@@ -154,7 +148,7 @@ vec3 transmittance(uint medium, float t) {
 /// stays on its line until then, unless it is so flat that it would miss too much: then it is lifted as well.
 Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
     const float slope = dot(direction, s.geometric);
-    const float first = min(s.offset / max(abs(slope), 1e-6), FLATTEST_START * s.offset);
+    const float first = min(s.offset / max(abs(slope), LEAST_SLOPE), FLATTEST_START * s.offset);
     const float lift = s.error + (s.offset - first * abs(slope));
     return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
 }

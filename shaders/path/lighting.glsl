@@ -30,7 +30,7 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
     const float n_l = dot(s.normal, to_light);
     if (n_l <= 0.0) return vec3(0);
     const vec3 h = normalize(view + to_light);
-    const float n_v = max(1e-4, dot(s.normal, view)), n_h = clamp(dot(s.normal, h), 0.0, 1.0), v_h = clamp(dot(view, h), 0.0, 1.0);
+    const float n_v = max(GRAZING_COSINE, dot(s.normal, view)), n_h = clamp(dot(s.normal, h), 0.0, 1.0), v_h = clamp(dot(view, h), 0.0, 1.0);
     const vec3 f0 = mix(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), s.base_color, m.metallic);
     const vec3 fresnel = fresnelSchlick(f0, v_h);
     vec3 result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - fresnel) * s.base_color / PI;

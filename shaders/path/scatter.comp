@@ -38,9 +38,6 @@ BUFFER(readonly, 26, GpuDraw, draws)
 #include "view/camera_start.glsl"
 #include "common/last_group.glsl"
 
-/// Branches that carry less than this share of the pixel are not traced: they see the environment.
-const float LEAST_WEIGHT = 1.0 / 512.0;
-
 shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
 shared uint group_first;
 shared uint group_first_light;
@@ -50,7 +47,7 @@ vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
     if (frame[0].spp <= 1u || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
     vec3 t, b;
     tangents(s.normal, t, b);
-    const vec3 local = vec3(dot(view, t), dot(view, b), max(1e-4, dot(view, s.normal)));
+    const vec3 local = vec3(dot(view, t), dot(view, b), max(GRAZING_COSINE, dot(view, s.normal)));
     const vec2 random = randomPair(seed, params.sample_index, RANDOM_MICROFACET);
     const vec3 h = sampleGgx(normalize(local), alpha, random);
     return normalize(t * h.x + b * h.y + s.normal * h.z);
@@ -58,8 +55,8 @@ vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
 float tracedPart(GpuMaterial m) {
-    if (frame[0].spp > 1u) return m.roughness < 0.6 || m.metallic > 0.5 ? 1.0 : 0.0;
-    return 1.0 - smoothstep(0.2, 0.5, m.roughness);
+    if (frame[0].spp > 1u) return m.roughness < TRACED_ROUGHNESS || m.metallic > MOSTLY_METAL ? 1.0 : 0.0;
+    return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, m.roughness);
 }
 
 void decide(inout Branch branch, vec3 path_weight, uint effect) {

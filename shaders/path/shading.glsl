@@ -2,10 +2,9 @@
 #ifndef PEELRAY_SHADING_GLSL
 #define PEELRAY_SHADING_GLSL
 
-const float PI = 3.14159265358979;
+#include "path/shading_numbers.h"
 
-/// Below this perceptual roughness a surface is a mirror: punctual lights leave no highlight, rays see the sun's disc.
-const float MIRROR_ROUGHNESS = 0.05;
+const float PI = 3.14159265358979;
 
 vec3 srgbToLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
 vec3 linearToSrgb(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
@@ -37,21 +36,18 @@ bool refractRay(vec3 incoming, vec3 normal, float eta, out vec3 refracted) {
     return true;
 }
 
-/// Cosine to a triangle's normal below which a shading normal counts as lying in the triangle's plane.
-const float NORMAL_IN_PLANE = 1e-4;
-
 /// An interpolated normal that the viewer would see from behind is bent until it is just visible.
 vec3 visibleNormal(vec3 normal, vec3 geometric, vec3 to_viewer) {
     const float cosine = dot(normal, to_viewer);
-    if (cosine >= 1e-3) return normal;
-    const vec3 bent = normal + to_viewer * (1e-3 - cosine);
+    if (cosine >= LEAST_COSINE) return normal;
+    const vec3 bent = normal + to_viewer * (LEAST_COSINE - cosine);
     return dot(bent, bent) > 1e-12 ? normalize(bent) : geometric;
 }
 
 /// A reflected direction that would enter the surface is lifted to just above it.
 vec3 aboveSurface(vec3 direction, vec3 geometric) {
     const float height = dot(direction, geometric);
-    return height >= 1e-3 ? direction : normalize(direction + geometric * (1e-3 - height));
+    return height >= LEAST_COSINE ? direction : normalize(direction + geometric * (LEAST_COSINE - height));
 }
 
 /// Split-sum factors of a GGX surface under white light: colour = f0 * x + y (Karis: Physically Based Shading on Mobile, 2014).
@@ -105,8 +101,6 @@ uvec3 hash3(uvec3 v) {
     v.z += v.x * v.y;
     return v;
 }
-
-const uint RANDOM_MICROFACET = 1u, RANDOM_SKY = 2u;
 
 /// Sample `index` of a place in the tree of rays: the R2 sequence, shifted by a hash of the place's seed and the purpose.
 vec2 randomPair(uint seed, uint index, uint purpose) {

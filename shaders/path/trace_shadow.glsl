@@ -22,9 +22,6 @@ PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any);
 /// Barycentric weights of a hit.
 vec2 shadowWeights(PeelrayRay ray, PeelrayHit hit);
 
-/// Layers of glass that a shadow ray passes before it counts as blocked.
-const uint SHADOW_LAYERS = 16u;
-
 /// Share of the light that arrives along the ray: the tint of the glass in between.
 vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
     vec3 share = vec3(1);
@@ -40,7 +37,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
-        if (largest(share) < 1.0 / 512.0) return vec3(0);
+        if (largest(share) < LEAST_WEIGHT) return vec3(0);
         ray.tmin = hit.t;
         skip = uvec2(hit.instance, hit.triangle);
     }

@@ -28,14 +28,14 @@ std::optional<glm::dvec3> refract_ray(const glm::dvec3& incoming, const glm::dve
 
 glm::dvec3 visible_normal(const glm::dvec3& normal, const glm::dvec3& geometric, const glm::dvec3& to_viewer) {
     const double cosine = glm::dot(normal, to_viewer);
-    if (cosine >= 1e-3) return normal;
-    const glm::dvec3 bent = normal + to_viewer * (1e-3 - cosine);
+    if (cosine >= LEAST_COSINE) return normal;
+    const glm::dvec3 bent = normal + to_viewer * (LEAST_COSINE - cosine);
     return glm::dot(bent, bent) > 1e-12 ? glm::normalize(bent) : geometric;
 }
 
 glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometric) {
     const double height = glm::dot(direction, geometric);
-    return height >= 1e-3 ? direction : glm::normalize(direction + geometric * (1e-3 - height));
+    return height >= LEAST_COSINE ? direction : glm::normalize(direction + geometric * (LEAST_COSINE - height));
 }
 
 glm::dvec3 environment_brdf(const glm::dvec3& f0, double roughness, double cosine) {

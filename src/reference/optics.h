@@ -6,17 +6,12 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "path/shading_numbers.h"
 #include "scene/picture.h"
 
 namespace peelray::optics {
 
 inline constexpr double pi = 3.14159265358979323846;
-/// Perceptual roughness below which a surface is a mirror.
-inline constexpr double mirror_roughness = 0.05;
-/// Cosine to a triangle's normal below which a shading normal counts as lying in the triangle's plane (as in shaders/).
-inline constexpr double normal_in_plane = 1e-4;
-/// Cosine to a triangle's normal below which a corner's normal says nothing about the surface (as in shaders/).
-inline constexpr double stray_normal = 0.1;
 
 inline double largest(const glm::dvec3& c) {
     return std::max(c.x, std::max(c.y, c.z));
@@ -54,7 +49,7 @@ Tangents tangents(const glm::dvec3& n);
 
 /// pcg3d (Jarzynski, Olano, JCGT 2020): bit for bit the GPU's.
 glm::uvec3 hash3(glm::uvec3 v);
-enum class Purpose : uint32_t { microfacet = 1, sky = 2 };
+enum class Purpose : uint32_t { microfacet = RANDOM_MICROFACET, sky = RANDOM_SKY };
 /// Sample `index` at a place of the tree of rays, [0, 1)²: bit for bit the GPU's.
 glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose);
 

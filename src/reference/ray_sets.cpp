@@ -14,8 +14,6 @@ namespace {
 
 constexpr uint32_t bounces = 4, ambient_samples = 4;
 constexpr double glass_index = 1.5;
-/// As in shaders/frame.glsl.
-constexpr float flattest_start = 4, rounding = 1e-6f;
 
 /// The parts of the sets, in their order: of refraction one a bounce, of ambient one a sample.
 enum Part : size_t {
@@ -81,7 +79,7 @@ class PixelRays {
             const glm::vec3 corner = glm::abs(geometry_.positions[geometry_.triangles[triangle][i]]);
             extent = std::max({extent, corner.x, corner.y, corner.z});
         }
-        return {point, direction, float(reach), s.geometric, rounding * extent, triangle};
+        return {point, direction, float(reach), s.geometric, float(POSITION_ROUNDING) * extent, triangle};
     }
 
     static glm::dvec3 reflected(const Surface& s, const glm::dvec3& d) {
@@ -142,7 +140,8 @@ RayKind kind_of(size_t part) {
 StartedRay leaving_ray(const SurfaceRay& ray, float offset) {
     if (ray.triangle == ~0u) return {ray.point, 0, ray.direction, ray.reach};
     const float slope = glm::dot(ray.direction, ray.normal);
-    const float first = std::min(offset / std::max(std::abs(slope), 1e-6f), flattest_start * offset);
+    const float first =
+        std::min(offset / std::max(std::abs(slope), float(LEAST_SLOPE)), float(FLATTEST_START) * offset);
     const float lift = ray.error + (offset - first * std::abs(slope));
     const glm::vec3 moved = ray.normal * (slope >= 0 ? lift : -lift);
     return {ray.point + moved, first, ray.direction, ray.reach - glm::dot(moved, ray.direction)};

@@ -11,15 +11,11 @@ namespace {
 
 using namespace optics;
 
-/// Branches that carry less of the pixel's light are not traced: they see the environment.
-constexpr double least_weight = 1.0 / 512;
-/// Layers of glass that a shadow ray passes before it counts as blocked.
-constexpr int shadow_layers = 16;
-
 /// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
 double traced_part(const Optics& m, uint32_t spp) {
-    if (spp > 1) return m.roughness < 0.6 || m.metallic > 0.5 ? 1 : 0;
-    const double x = std::clamp((m.roughness - 0.2) / 0.3, 0.0, 1.0);
+    if (spp > 1) return m.roughness < TRACED_ROUGHNESS || m.metallic > MOSTLY_METAL ? 1 : 0;
+    const double x =
+        std::clamp((m.roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
     return 1 - x * x * (3 - 2 * x);
 }
 
@@ -56,10 +52,11 @@ glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view
     const double n_l = glm::dot(s.normal, to_light);
     if (n_l <= 0) return glm::dvec3(0);
     const glm::dvec3 h = glm::normalize(view + to_light);
-    const double n_v = std::max(1e-4, glm::dot(s.normal, view)), n_h = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
+    const double n_v = std::max(GRAZING_COSINE, glm::dot(s.normal, view)),
+                 n_h = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
     const glm::dvec3 fresnel = fresnel_schlick(normal_incidence(s, m), std::clamp(glm::dot(view, h), 0.0, 1.0));
     glm::dvec3 share = (1 - m.metallic) * (1 - m.transmission) * (1.0 - fresnel) * s.base_color / pi;
-    if (m.roughness >= mirror_roughness) {
+    if (m.roughness >= MIRROR_ROUGHNESS) {
         const double alpha = m.roughness * m.roughness;
         share += fresnel *
                  (ggx_distribution(n_h, alpha) * ggx_masking(n_v, alpha) * ggx_masking(n_l, alpha) / (4 * n_v * n_l));
@@ -111,14 +108,14 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
 }
 
 bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
-    return effect && path.level < context_.settings.bounces && largest(branch.weight * path.weight) >= least_weight;
+    return effect && path.level < context_.settings.bounces && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
 }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
 glm::dvec3 Shader::half_vector(const Surface& s, const glm::dvec3& view, double alpha, uint32_t seed) const {
-    if (context_.settings.spp <= 1 || alpha < mirror_roughness * mirror_roughness) return s.normal;
+    if (context_.settings.spp <= 1 || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
     const auto [t, b] = tangents(s.normal);
-    const glm::dvec3 local(glm::dot(view, t), glm::dot(view, b), std::max(1e-4, glm::dot(view, s.normal)));
+    const glm::dvec3 local(glm::dot(view, t), glm::dot(view, b), std::max(GRAZING_COSINE, glm::dot(view, s.normal)));
     const glm::dvec3 h = sample_ggx(glm::normalize(local), alpha, random_pair(seed, sample_, Purpose::microfacet));
     return glm::normalize(t * h.x + b * h.y + s.normal * h.z);
 }
@@ -134,7 +131,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
     }
     const glm::dvec3 view = -path.direction;
     const bool transmits = m.transmits(), leaving = transmits && !m.thin && !s.front,
-               mirror = m.roughness < mirror_roughness;
+               mirror = m.roughness < MIRROR_ROUGHNESS;
     const double eta = leaving ? 1 / m.ior : m.ior, alpha = m.roughness * m.roughness;
     const glm::dvec3 h = half_vector(s, view, alpha, path.seed);
     const double cosine = std::clamp(glm::dot(view, h), 0.0, 1.0);
@@ -208,7 +205,7 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     if (diffuse == glm::dvec3(0)) return diffuse;
     // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
-    if (m.roughness < mirror_roughness)
+    if (m.roughness < MIRROR_ROUGHNESS)
         diffuse *= 1 - fresnel_dielectric(cosine, m.ior);
     else
         diffuse *= 1.0 - environment_brdf(glm::dvec3(normal_reflectance(m.ior)), m.roughness, cosine);
@@ -230,7 +227,7 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
     glm::dvec3 share(1);
     uint32_t skip = triangle;
     double from = 0;
-    for (int layer = 0; layer < shadow_layers; layer++) {
+    for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
         const OracleHit hit = context_.bvh.nearest({start, from, direction, distance}, skip).hit;
         if (!hit.hit()) return share;
         const Optics& m = context_.surfaces.optics_of_triangle(hit.triangle);
@@ -242,7 +239,7 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
         share *= (1 - reflected) * (1 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!m.thin && !s.front) share *= glm::exp(-m.absorption * (hit.t - from));
-        if (largest(share) < least_weight) return glm::dvec3(0);
+        if (largest(share) < LEAST_WEIGHT) return glm::dvec3(0);
         from = hit.t;
         skip = hit.triangle;
     }

@@ -57,14 +57,14 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     s.geometric = size > 0 ? area / size : normal;
     s.front = glm::dot(s.geometric, direction) < 0;
     if (!s.front) s.geometric = -s.geometric;
-    const double side = glm::dot(normal, s.geometric) < -optics::normal_in_plane ? -1 : 1;
+    const double side = glm::dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1 : 1;
     s.normal = optics::visible_normal(side * normal, s.geometric, -direction);
     s.shadow_start = glm::dvec3(0);
     for (int i = 0; i < 3; i++) {
         // The position, lifted to the plane through each corner along the corner's normal.
         const glm::dvec3 corner_normal = side * n[i];
         const double below = std::min(0.0, glm::dot(s.position - p[i], corner_normal));
-        const bool stray = glm::dot(corner_normal, s.geometric) <= optics::stray_normal;
+        const bool stray = glm::dot(corner_normal, s.geometric) <= STRAY_NORMAL;
         s.shadow_start += weights[i] * (stray ? s.position : s.position - below * corner_normal);
     }
     s.base_color = optics_[s.material].base_color;

@@ -21,7 +21,7 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             const Material& m = scene.materials[last];
             if (m.unlit) continue;
             s.transmits |= transmits(m);
-            s.metallic |= m.metallic > 0.5f;
+            s.metallic |= m.metallic > float(MOSTLY_METAL);
             s.smoothest = std::min(s.smoothest, m.roughness);
             s.roughest = std::max(s.roughest, m.roughness);
         }

@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
+#include "path/shading_numbers.h"
 #include "scene/sampling.h"
 
 namespace peelray {
-namespace {
-
-/// An alpha this little below the cutoff counts as reaching it: rounding makes no holes where both are equal (as in
-/// shaders/).
-constexpr double rounding = 1e-6;
-
-}  // namespace
-
 bool has_masks(const Scene& scene, const std::vector<uint32_t>& triangle_materials) {
     return std::any_of(triangle_materials.begin(), triangle_materials.end(),
                        [&](uint32_t material) { return scene.materials[material].alpha_cutoff > 0; });
@@ -42,7 +35,7 @@ bool AlphaTest::is_present(uint32_t triangle, double u, double v) const {
             scene_->textures[size_t(m.base_color_texture)],
             interpolate(glm::dvec2(uvs[corners.x]), glm::dvec2(uvs[corners.y]), glm::dvec2(uvs[corners.z])));
     }
-    return alpha >= double(m.alpha_cutoff) - rounding;
+    return alpha >= double(m.alpha_cutoff) - ALPHA_ROUNDING;
 }
 
 }  // namespace peelray

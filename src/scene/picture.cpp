@@ -11,7 +11,7 @@ bool is_reflective(const Scene& scene, uint32_t spp) {
     const auto reflects = [&](const Primitive& primitive) {
         const Material& m = scene.materials[primitive.material];
         return !primitive.triangles.empty() && !m.unlit &&
-               (transmits(m) || is_reflection_traced(m.roughness, m.metallic > 0.5f, spp));
+               (transmits(m) || is_reflection_traced(m.roughness, m.metallic > float(MOSTLY_METAL), spp));
     };
     return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
         if (node.mesh < 0) return false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/ray_costs.h"
+#include "path/shading_numbers.h"
 #include "scene/box.h"
 #include "scene/scene.h"
 #include "settings/choices.h"
@@ -64,7 +65,7 @@ inline bool transmits(const Material& material) {
 /// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more
 /// than half.
 inline bool is_reflection_traced(float roughness, bool metallic, uint32_t spp) {
-    return spp > 1 ? roughness < 0.6f || metallic : roughness < 0.5f;
+    return spp > 1 ? roughness < float(TRACED_ROUGHNESS) || metallic : roughness < float(FADE_LAST_ROUGHNESS);
 }
 
 /// Does any surface start reflected or refracted rays? Rough ones do not (docs/frame.md section 4).

@@ -1,0 +1,44 @@
+// What shaders and the reference must agree on: the definitions behind a picture, where they are numbers. How to
+// compute with them each says for itself. Macros, so that they are double precision in the reference.
+#ifndef PEELRAY_SHADING_NUMBERS_H
+#define PEELRAY_SHADING_NUMBERS_H
+
+// Perceptual roughness below which a surface is a mirror: punctual lights leave no highlight, rays see the sun's disc.
+#define MIRROR_ROUGHNESS 0.05
+// With several samples per pixel the reflection of an opaque surface is traced below this roughness, or where it is
+// metal for the most part.
+#define TRACED_ROUGHNESS 0.6
+#define MOSTLY_METAL 0.5
+// With one sample tracing fades out between these.
+#define FADE_FIRST_ROUGHNESS 0.2
+#define FADE_LAST_ROUGHNESS 0.5
+// Branches that carry less than this share of the pixel are not traced: they see the environment. Shadow rays that let
+// less through count as blocked.
+#define LEAST_WEIGHT (1.0 / 512.0)
+// Layers of glass that a shadow ray passes before it counts as blocked.
+#define SHADOW_LAYERS 16
+
+// Cosine to a triangle's normal below which a shading normal counts as lying in the triangle's plane.
+#define NORMAL_IN_PLANE 1e-4
+// Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands
+// for.
+#define STRAY_NORMAL 0.1
+// Cosine to which shading normals are bent towards the viewer, and reflected directions lifted above the surface.
+#define LEAST_COSINE 1e-3
+// Cosine that shading takes for the viewer's at least.
+#define GRAZING_COSINE 1e-4
+
+// Rounding of a hit's position, of the largest coordinate of its triangle, in single precision.
+#define POSITION_ROUNDING 1e-6
+// Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
+#define FLATTEST_START 4.0
+// Slopes below this count as this.
+#define LEAST_SLOPE 1e-6
+// An alpha this little below the cutoff reaches it: rounding makes no holes where both are equal.
+#define ALPHA_ROUNDING 1e-6
+
+// What random numbers are for.
+#define RANDOM_MICROFACET 1
+#define RANDOM_SKY 2
+
+#endif
