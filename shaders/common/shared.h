@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 namespace peelray {
 using glm::ivec3;
+using glm::mat2x4;
 using glm::mat4;
 using glm::uvec2;
 using glm::uvec4;

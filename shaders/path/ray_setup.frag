@@ -3,27 +3,28 @@
 // registers, which costs less than reading it back.
 #version 460
 #include "common/common.glsl"
+#include "path/aov_records.h"
 #include "path/frame.h"
 #include "path/path_params.h"
 PARAMS(RaySetupParams)
 BUFFER(readonly, 0, Frame, frame)
-BUFFER(readonly, 1, vec4, aovs)  // as aov.comp leaves them
+BUFFER(readonly, 1, AovSurface, aovs)
 layout(location = 0) out vec4 reflection;
 layout(location = 1) out vec4 box_point;
 layout(location = 2) out vec4 directions_xy;  // in the x-LDI (y, z), in the y-LDI (z, x)
 layout(location = 3) out vec4 directions_z;   // in the z-LDI (x, y)
 
 void main() {
-    const uint at = (uint(gl_FragCoord.y) * frame[0].width + uint(gl_FragCoord.x)) * 4u;
+    const uint at = uint(gl_FragCoord.y) * frame[0].width + uint(gl_FragCoord.x);
     reflection = box_point = directions_xy = directions_z = vec4(0);
-    const vec4 position = aovs[at + 3u];
-    if (position.w == 0.0) return;
-    const vec3 incoming = frame[0].orthographic != 0u ? frame[0].forward : normalize(position.xyz - frame[0].eye);
-    const vec3 d = reflect(incoming, aovs[at + 1u].xyz);
-    const vec3 way = mix(params.lower, params.upper, greaterThan(d, vec3(0))) - position.xyz;
+    if (aovs[at].seen == 0.0) return;
+    const vec3 position = aovs[at].position.xyz;
+    const vec3 incoming = frame[0].orthographic != 0u ? frame[0].forward : normalize(position - frame[0].eye);
+    const vec3 d = reflect(incoming, aovs[at].normal.xyz);
+    const vec3 way = mix(params.lower, params.upper, greaterThan(d, vec3(0))) - position;
     const vec3 t = vec3(d.x == 0.0 ? 1e30 : way.x / d.x, d.y == 0.0 ? 1e30 : way.y / d.y, d.z == 0.0 ? 1e30 : way.z / d.z);
     reflection = vec4(d, 1);
-    box_point = vec4(position.xyz + max(min(t.x, min(t.y, t.z)), 0.0) * d, 1);
+    box_point = vec4(position + max(min(t.x, min(t.y, t.z)), 0.0) * d, 1);
     directions_xy = vec4(d.yz, d.zx);
     directions_z = vec4(d.xy, 0, 0);
 }

@@ -1,5 +1,7 @@
 #include "cli/arguments.h"
 
+#include "settings/aovs.h"
+
 namespace peelray {
 namespace {
 
@@ -67,11 +69,12 @@ SettingList options_of(RenderArguments& a) {
     add_setting(list, a.aovs,
                 {.name = "aov",
                  .group = group,
-                 .help = "also write these to NAME.KIND.exr beside NAME.png: a list out of "
-                         "depth,normal,albedo,position,triangle,material, or all of them; or out of "
-                         "reflection,box,directions: what the paper sets up for mirror rays (its Figure 7); or out of "
-                         "cost_steps,cost_cells,cost_pixels,cost_samples,cost_triangles: what all rays of a pixel cost "
-                         "in the cubes, with a heat map NAME.KIND.png",
+                 .help = "also write these to NAME.KIND.exr beside NAME.png: a list out of " +
+                         print_text(aovs_of(AovSource::surface)) + ", or all of them; or out of " +
+                         print_text(aovs_of(AovSource::ray_setup)) +
+                         ": what the paper sets up for mirror rays (its Figure 7); or out of " +
+                         print_text(aovs_of(AovSource::costs)) +
+                         ": what all rays of a pixel cost in the cubes, with a heat map NAME.KIND.png",
                  .form = "LIST",
                  .expected = "a list out of " + print_text(values_of<Aov>()) + ", or all"},
                 parse_aovs, [](const std::vector<Aov>& aovs) {

@@ -1,6 +1,8 @@
 #include "cli/picture_files.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -38,38 +40,44 @@ void write_costs(const Picture& picture, const RayCostField& field, Aov aov, con
     write_png(heat_map_path(output, aov), colorize({picture.width, picture.height, counts}));
 }
 
-void write_aovs(const Picture& result, const std::vector<Aov>& aovs, const fs::path& output) {
-    const Aovs& a = result.aovs;
-    const auto component = [](const std::vector<glm::vec4>& values, int i) {
-        std::vector<float> channel;
-        for (const glm::vec4& value : values) channel.push_back(value[i]);
-        return channel;
-    };
-    for (const Aov aov : aovs) {
-        const fs::path path = aov_path(output, aov);
-        const auto write = [&](const std::vector<std::string>& channels,
-                               const std::vector<std::vector<float>>& values) {
-            write_exr_channels(path, result.width, result.height, channels, values);
-        };
-        if (const RayCostField* field = cost_field(aov)) write_costs(result, *field, aov, output);
-        if (aov == Aov::depth) write({"Z"}, {a.depth});
-        if (aov == Aov::triangle) write({"triangle"}, {a.triangle});
-        if (aov == Aov::material) write({"material"}, {a.material});
-        if (aov == Aov::normal)
-            write({"X", "Y", "Z"}, {component(a.normal, 0), component(a.normal, 1), component(a.normal, 2)});
-        if (aov == Aov::albedo)
-            write({"R", "G", "B"}, {component(a.albedo, 0), component(a.albedo, 1), component(a.albedo, 2)});
-        if (aov == Aov::reflection)
-            write({"X", "Y", "Z"},
-                  {component(a.reflection, 0), component(a.reflection, 1), component(a.reflection, 2)});
-        if (aov == Aov::box) write({"X", "Y", "Z"}, {component(a.box, 0), component(a.box, 1), component(a.box, 2)});
-        if (aov == Aov::directions)
-            write({"x.U", "x.V", "y.U", "y.V", "z.U", "z.V"},
-                  {component(a.directions_xy, 0), component(a.directions_xy, 1), component(a.directions_xy, 2),
-                   component(a.directions_xy, 3), component(a.directions_z, 0), component(a.directions_z, 1)});
-        if (aov == Aov::position)
-            write({"X", "Y", "Z"}, {component(a.position, 0), component(a.position, 1), component(a.position, 2)});
+/// Names of the channels of a file, by the kinds of the table.
+namespace channels {
+std::vector<std::string> distance(Aov) {
+    return {"Z"};
+}
+std::vector<std::string> index(Aov aov) {
+    return {name_of(aov)};
+}
+std::vector<std::string> vector(Aov) {
+    return {"X", "Y", "Z"};
+}
+std::vector<std::string> color(Aov) {
+    return {"R", "G", "B"};
+}
+std::vector<std::string> directions(Aov) {
+    return {"x.U", "x.V", "y.U", "y.V", "z.U", "z.V"};
+}
+}  // namespace channels
+
+/// The first components of each pixel's value, one channel each.
+template <typename Value>
+void write_channels(const fs::path& path, const Picture& picture, const std::vector<std::string>& names,
+                    const std::vector<Value>& pixels) {
+    std::vector<std::vector<float>> values(names.size());
+    for (const Value& pixel : pixels) {
+        const auto components = std::bit_cast<std::array<float, sizeof(Value) / sizeof(float)>>(pixel);
+        for (size_t i = 0; i < names.size(); i++) values[i].push_back(components[i]);
     }
+    write_exr_channels(path, picture.width, picture.height, names, values);
+}
+
+void write_aov(const Picture& picture, Aov aov, const fs::path& output) {
+    if (const RayCostField* field = cost_field(aov)) return write_costs(picture, *field, aov, output);
+#define AOV_WRITE(name, type, kind, nothing) \
+    if (aov == Aov::name) return write_channels(aov_path(output, aov), picture, channels::kind(aov), picture.aovs.name);
+    SURFACE_AOVS(AOV_WRITE)
+    RAY_SETUP_AOVS(AOV_WRITE)
+#undef AOV_WRITE
 }
 
 }  // namespace
@@ -89,7 +97,7 @@ fs::path heat_map_path(const fs::path& output, Aov aov) {
 }
 
 void write_picture(const Picture& picture, const std::vector<Aov>& aovs, const fs::path& path) {
-    write_aovs(picture, aovs, path);
+    for (const Aov aov : aovs) write_aov(picture, aov, path);
     if (format_of(path) == Format::png)
         write_png(path, Image8{picture.width, picture.height, picture.encoded});
     else

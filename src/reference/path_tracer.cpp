@@ -58,13 +58,10 @@ void prepare(Picture& picture, const PictureSettings& s) {
     picture.encoded.resize(pixels);
     picture.rays.primary = uint64_t(pixels) * s.spp;
     if (!s.aovs) return;
-    Aovs& a = picture.aovs;
-    a.depth.assign(pixels, std::numeric_limits<float>::infinity());
-    a.triangle.assign(pixels, -1);
-    a.material.assign(pixels, -1);
-    a.normal.assign(pixels, glm::vec4(0));
-    a.albedo = a.position = a.normal;
-    a.reflection = a.box = a.directions_xy = a.directions_z = a.normal;
+#define AOV_NOTHING(name, type, channels, nothing) picture.aovs.name.assign(pixels, type(nothing));
+    SURFACE_AOVS(AOV_NOTHING)
+    RAY_SETUP_AOVS(AOV_NOTHING)
+#undef AOV_NOTHING
 }
 
 }  // namespace
@@ -108,8 +105,7 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
         if (d[k] != 0) t = std::min(t, ((d[k] > 0 ? box.upper : box.lower)[k] - s.position[k]) / d[k]);
     a.reflection[at] = glm::vec4(d, 1);
     a.box[at] = glm::vec4(s.position + std::max(t, 0.0) * d, 1);
-    a.directions_xy[at] = glm::vec4(d.y, d.z, d.z, d.x);
-    a.directions_z[at] = glm::vec4(d.x, d.y, 0, 0);
+    a.directions[at] = glm::mat2x4(d.y, d.z, d.z, d.x, d.x, d.y, 0, 0);
 }
 
 void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,

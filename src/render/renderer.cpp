@@ -513,13 +513,14 @@ void Renderer::Impl::render_frame(const std::function<void(double)>& progress) {
 
 void Renderer::Impl::render_aovs(Aovs& aovs) {
     const size_t pixels = size_t(settings.width) * settings.height;
-    if (pixels * 64 > device.limits().maxStorageBufferRange)
+    if (pixels * sizeof(AovSurface) > device.limits().maxStorageBufferRange)
         fail(
             "auxiliary pictures of {}x{} pixels need {:.0f} MiB at once, more than the device '{}' binds: choose a "
             "smaller {}",
-            settings.width, settings.height, double(pixels) * 64 / (1 << 20), device.info().name, setting::size);
+            settings.width, settings.height, double(pixels) * sizeof(AovSurface) / (1 << 20), device.info().name,
+            setting::size);
     const MemoryPart part(device, "images");
-    ensure_size(device, aov_buffer, "auxiliary pictures", pixels * 64);
+    ensure_size(device, aov_buffer, "auxiliary pictures", pixels * sizeof(AovSurface));
     commands.fill(queues.counters(), 0);
     record_visibility(0);  // it found room before
     for (uint32_t row = 0; row < settings.height; row += band_rows) {
@@ -534,15 +535,11 @@ void Renderer::Impl::render_aovs(Aovs& aovs) {
                      p, groups_for(p.capacity, 64));
     }
     commands.submit();
-    const auto data = commands.download<glm::vec4>(aov_buffer, pixels * 4);
-    for (size_t i = 0; i < pixels; i++) {
-        aovs.depth.push_back(data[4 * i].x);
-        aovs.triangle.push_back(data[4 * i].y);
-        aovs.material.push_back(data[4 * i].z);
-        aovs.normal.push_back(data[4 * i + 1]);
-        aovs.albedo.push_back(data[4 * i + 2]);
-        aovs.position.push_back(data[4 * i + 3]);
-    }
+    const auto records = commands.download<AovSurface>(aov_buffer, pixels);
+#define AOV_STORE(name, type, channels, nothing) \
+    for (const AovSurface& record : records) aovs.name.push_back(record.name);
+    SURFACE_AOVS(AOV_STORE)
+#undef AOV_STORE
 }
 
 /// The paper's Figure 7, in render targets.
@@ -561,7 +558,7 @@ void Renderer::Impl::render_ray_setup(Aovs& aovs) {
     for (const Image2D& image : images) targets.colors.push_back(&image);
     targets.width = settings.width;
     targets.height = settings.height;
-    const Buffer stored(device, "mirror rays", uint64_t(pixels) * 64);
+    const Buffer stored(device, "mirror rays", uint64_t(pixels) * sizeof(AovRaySetup));
     const RaySetupParams p{box.lower, box.upper};
     const DrawRange whole{0, 1, 0, 1};
     const Binding bindings[] = {{"frame", view.frame}, {"aovs", aov_buffer}};
@@ -575,13 +572,11 @@ void Renderer::Impl::render_ray_setup(Aovs& aovs) {
                   {"directions_z", images[3]}},
                  pixels, groups_for(pixels, 64));
     commands.submit();
-    const auto data = commands.download<glm::vec4>(stored, pixels * 4);
-    for (size_t i = 0; i < pixels; i++) {
-        aovs.reflection.push_back(data[4 * i]);
-        aovs.box.push_back(data[4 * i + 1]);
-        aovs.directions_xy.push_back(data[4 * i + 2]);
-        aovs.directions_z.push_back(data[4 * i + 3]);
-    }
+    const auto records = commands.download<AovRaySetup>(stored, pixels);
+#define AOV_STORE(name, type, channels, nothing) \
+    for (const AovRaySetup& record : records) aovs.name.push_back(record.name);
+    RAY_SETUP_AOVS(AOV_STORE)
+#undef AOV_STORE
 }
 
 /// The part of the program that what is uploaded is accounted for as.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/ray_costs.h"
+#include "path/aov_records.h"
 #include "path/shading_numbers.h"
 #include "scene/box.h"
 #include "scene/scene.h"
@@ -31,14 +32,12 @@ struct PictureSettings {
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
 };
 
-/// Auxiliary pictures at the pixel centres; width·height entries each, row 0 at the top.
+/// Auxiliary pictures at the pixel centres (path/aov_table.h); width·height entries each, row 0 at the top.
 struct Aovs {
-    std::vector<float> depth;                         ///< distance along the camera ray, world units; +inf: nothing
-    std::vector<float> triangle, material;            ///< index; -1: nothing
-    std::vector<glm::vec4> normal, albedo, position;  ///< world space; w: 1 where there is a surface (normal: 0)
-    /// What the paper sets up for every mirror ray (Figure 7): its direction, where it leaves the scene's box, its
-    /// direction in the x-LDI (y, z) and y-LDI (z, x), in the z-LDI (x, y).
-    std::vector<glm::vec4> reflection, box, directions_xy, directions_z;
+#define AOV_PICTURE(name, type, channels, nothing) std::vector<type> name;
+    SURFACE_AOVS(AOV_PICTURE)
+    RAY_SETUP_AOVS(AOV_PICTURE)
+#undef AOV_PICTURE
     /// Where it was counted: what all rays of a pixel cost, of all samples.
     std::vector<RayCosts> costs;
 };

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "path/aov_table.h"
+
 namespace peelray {
 
 template <typename Value>
@@ -136,38 +138,16 @@ constexpr auto names_of(RayKind) {
                                           {RayKind::diffuse, "diffuse"}});
 }
 
-/// Auxiliary pictures.
+/// Auxiliary pictures (path/aov_table.h).
 enum class Aov : uint8_t {
-    depth,
-    normal,
-    albedo,
-    position,
-    triangle,
-    material,
-    reflection,
-    box,
-    directions,  ///< what the paper sets up for mirror rays (its Figure 7)
-    cost_steps,
-    cost_cells,
-    cost_pixels,
-    cost_samples,
-    cost_triangles,  ///< what all rays of a pixel cost (RayCosts)
+#define AOV_VALUE(name, type, channels, nothing) name,
+    SURFACE_AOVS(AOV_VALUE) RAY_SETUP_AOVS(AOV_VALUE) COST_AOVS(AOV_VALUE)
+#undef AOV_VALUE
 };
 constexpr auto names_of(Aov) {
-    return std::to_array<Named<Aov>>({{Aov::depth, "depth"},
-                                      {Aov::normal, "normal"},
-                                      {Aov::albedo, "albedo"},
-                                      {Aov::position, "position"},
-                                      {Aov::triangle, "triangle"},
-                                      {Aov::material, "material"},
-                                      {Aov::reflection, "reflection"},
-                                      {Aov::box, "box"},
-                                      {Aov::directions, "directions"},
-                                      {Aov::cost_steps, "cost_steps"},
-                                      {Aov::cost_cells, "cost_cells"},
-                                      {Aov::cost_pixels, "cost_pixels"},
-                                      {Aov::cost_samples, "cost_samples"},
-                                      {Aov::cost_triangles, "cost_triangles"}});
+#define AOV_NAME(name, type, channels, nothing) Named<Aov>{Aov::name, #name},
+    return std::to_array({SURFACE_AOVS(AOV_NAME) RAY_SETUP_AOVS(AOV_NAME) COST_AOVS(AOV_NAME)});
+#undef AOV_NAME
 }
 
 /// An enumeration with a table of names.

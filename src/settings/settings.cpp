@@ -1,5 +1,7 @@
 #include "settings/settings.h"
 
+#include "settings/aovs.h"
+
 namespace peelray {
 namespace {
 
@@ -45,8 +47,7 @@ std::optional<ChoiceSet<Effect>> parse_effects(const std::string& text) {
 }
 
 std::optional<std::vector<Aov>> parse_aovs(const std::string& text) {
-    if (text == "all")
-        return std::vector{Aov::depth, Aov::normal, Aov::albedo, Aov::position, Aov::triangle, Aov::material};
+    if (text == "all") return aovs_of(AovSource::surface);
     return parse_list<Aov>(
         text, [](const std::string& name) { return value_named<Aov>(name); }, false);
 }

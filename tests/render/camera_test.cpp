@@ -84,7 +84,7 @@ TEST_F(CameraTest, MirrorRaysAreSetUpAsThePaperHasThem) {
                     inside = inside && q[k] > box.lower[k] - 1e-4 && q[k] < box.upper[k] + 1e-4;
                 }
                 const bool ahead = glm::length(q - p - glm::length(q - p) * d) < 1e-4;
-                const glm::vec4 &e = a.directions_xy[i], &f = a.directions_z[i];
+                const glm::vec4 &e = a.directions[i][0], &f = a.directions[i][1];
                 const bool turned = glm::dvec3(f.x, f.y, e.y) == d && glm::dvec3(e.w, e.x, e.z) == d;
                 result.add(near(d, want, 1e-5) && side < 1e-4 && inside && ahead && turned,
                            [&] { return fmt::format("pixel {},{}: {}, box {}", x, y, text(d), text(q)); });

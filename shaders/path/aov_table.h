@@ -1,0 +1,39 @@
+// The auxiliary pictures, a line each: AOV(name, type, channels, nothing). Names, files, help and the records that
+// shaders write follow from here; what is left to do is to set the value in the one place that is named.
+//   type      of a pixel's value, in shaders and on the host: float, vec4, ...
+//   channels  of the file: distance, index, vector, color, directions, cost (src/cli/picture_files.cpp)
+//   nothing   the value where the camera sees nothing
+#ifndef PEELRAY_AOV_TABLE_H
+#define PEELRAY_AOV_TABLE_H
+
+// What the camera sees at the pixel centres, in the world: set in aov.comp and in src/reference/path_tracer.cpp.
+//   depth     distance along the camera ray
+//   position  w: 1 where there is a surface
+//   triangle, material: numbers
+#define SURFACE_AOVS(AOV)                     \
+    AOV(depth, float, distance, AOV_INFINITY) \
+    AOV(normal, vec4, vector, 0)              \
+    AOV(albedo, vec4, color, 0)               \
+    AOV(position, vec4, vector, 0)            \
+    AOV(triangle, float, index, -1)           \
+    AOV(material, float, index, -1)
+
+// What the paper sets up for every mirror ray (its Figure 7): set in ray_setup_store.comp and in
+// src/reference/path_tracer.cpp.
+//   reflection  direction of the ray
+//   box         where it leaves the scene's box
+//   directions  its direction in the x-LDI (y, z), in the y-LDI (z, x), in the z-LDI (x, y), two zeros
+#define RAY_SETUP_AOVS(AOV)          \
+    AOV(reflection, vec4, vector, 0) \
+    AOV(box, vec4, vector, 0)        \
+    AOV(directions, mat2x4, directions, 0)
+
+// What all rays of a pixel cost, of all samples: the fields of RayCosts, counted by counting.glsl. These are last.
+#define COST_AOVS(AOV)               \
+    AOV(cost_steps, uint, cost, 0)   \
+    AOV(cost_cells, uint, cost, 0)   \
+    AOV(cost_pixels, uint, cost, 0)  \
+    AOV(cost_samples, uint, cost, 0) \
+    AOV(cost_triangles, uint, cost, 0)
+
+#endif
