@@ -60,9 +60,9 @@ struct PeelrayTree {
 
 /// What a ray has cost: how often the traversal did each of these.
 struct PeelrayCounts {
-    uint steps;      ///< cells of any level that it stood in, empty boxes included
+    uint steps;      ///< cells of any level that it was in, empty boxes included
     uint cells;      ///< lists of samples that it met: occupied voxels, or by pixel those that hold a sample
-    uint pixels;     ///< by pixel: pixels that it stood in, empty ones included
+    uint pixels;     ///< by pixel: pixels that it was in, empty ones included
     uint samples;    ///< samples tested
     uint triangles;  ///< triangles tested (`exact`)
 };

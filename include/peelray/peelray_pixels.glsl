@@ -146,7 +146,8 @@ PeelrayWalk peelrayBeginWalk(PeelrayLocal r, PeelrayOptions options, uint axis, 
     return walk;
 }
 
-/// One turn: down a level where the ray's depths meet the cell's range, else on to the next cell. Returns whether a sample was hit.
+/// One step: down a level where the ray's depths meet the cell's range, otherwise on to the next cell. Returns whether
+/// a sample was hit.
 bool peelrayStep(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayWalk walk, inout PeelrayLocal r,
                  inout PeelrayHit hit) {
     PEELRAY_COUNT(steps);
@@ -243,8 +244,8 @@ void peelrayTracePixels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
         statement                       \
     }
 
-/// Four rays at a time (the paper, section 4): in every turn each of them takes a step. The hits are those of peelrayTrace; the
-/// instances are walked in their order, without the hierarchy.
+/// Four rays at a time (the paper, section 4): in every iteration each of them takes a step. The hits are those of
+/// peelrayTrace; the instances are walked in their order, without the hierarchy.
 void peelrayTraceFour(uint instances, PeelrayRay rays[4], uvec2 skips[4], PeelrayOptions options, out PeelrayHit hits[4]) {
     const float infinity = uintBitsToFloat(0x7f800000u);
     float scales[4];

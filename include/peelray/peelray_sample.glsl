@@ -20,8 +20,8 @@ const float PEELRAY_FOOTPRINT = 0.7;
 /// (x, y, z) as (u, v, w) of the LDI along `axis`, which is its w.
 vec3 peelrayToLdi(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
 
-/// Place of a pixel in an LDI of the by-pixel order, whose rows have `width` pixels (a multiple of 16): 8x8 tiles, for rays walk
-/// both ways.
+/// Place of a pixel in an LDI of the by-pixel order, whose rows have `width` pixels (a multiple of 16): 8x8 tiles,
+/// since rays walk in both directions.
 uint peelrayPixelIndex(uvec2 pixel, uint width) {
     const uvec2 tile = pixel >> 3u, inside = pixel & 7u;
     return ((tile.y * (width >> 3u) + tile.x) << 6u) + (inside.y << 3u) + inside.x;

@@ -1,4 +1,4 @@
-// What tells the base colour of a triangle and its alpha, at bindings BASE_COLOR_FIRST_BINDING ... + 5.
+// What gives the base colour of a triangle and its alpha, at bindings BASE_COLOR_FIRST_BINDING ... + 5.
 #include "common/material.h"
 BUFFER(readonly, BASE_COLOR_FIRST_BINDING + 0, GpuMaterial, materials)
 BUFFER(readonly, BASE_COLOR_FIRST_BINDING + 1, GpuTexture, texture_infos)

@@ -10,8 +10,8 @@
 #define BUFFER(access, index, type, name) \
     layout(set = 0, binding = index, scalar) access buffer name##_block { type name[]; };
 
-// The same of a type whose size is a multiple of 8 or 16 bytes, and whose members lie as std430 has them: loaded at once, not
-// word by word.
+// The same for a type whose size is a multiple of 8 or 16 bytes, and whose members lie as std430 has them: loaded at
+// once, not word by word.
 #define BUFFER_ALIGNED(access, index, type, name) \
     layout(set = 0, binding = index, std430) access buffer name##_block { type name[]; };
 
@@ -22,7 +22,7 @@
 #define PARAMS(type) \
     layout(push_constant, scalar) uniform params_block { type params; };
 
-// Workgroups come in rows of DISPATCH_ROW, for a device may run no more than 65535 in one direction (see groups_for).
+// Workgroups come in rows of DISPATCH_ROW, since a device may run no more than 65535 in one direction (see groups_for).
 #define DISPATCH_ROW 32768u
 #define GROUP_INDEX (gl_WorkGroupID.y * DISPATCH_ROW + gl_WorkGroupID.x)
 #define GLOBAL_INDEX (GROUP_INDEX * gl_WorkGroupSize.x + gl_LocalInvocationIndex)

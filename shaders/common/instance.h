@@ -15,7 +15,7 @@ struct GpuTransform {
 };
 SHARED_SIZE(GpuTransform, 48);
 
-/// What of an instance never changes.
+/// The part of an instance that never changes.
 struct InstanceInfo {
     uint body;
     uint first_id;      ///< added to the ids of its triangles

@@ -5,7 +5,8 @@
 
 #include "path/path_params.h"
 
-/// Is this the last workgroup of the dispatch to come here? To be asked by one thread of each, once its counters are written.
+/// Is this the last workgroup of the dispatch to come here? To be called by one thread of each, once its counters are
+/// written.
 bool isLastGroup() {
     memoryBarrierBuffer();
     if (atomicAdd(queue[QUEUE_FINISHED], 1u) + 1u < gl_NumWorkGroups.x * gl_NumWorkGroups.y) return false;

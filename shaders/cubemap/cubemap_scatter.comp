@@ -63,8 +63,8 @@ void main() {
         Branch reflection, refraction;
         radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
         radiance += reflection.weight * seen(reflection, m.roughness);
-        // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material tells, and
-        // blurred less the less it bends (the glTF Sample Viewer's rule).
+        // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
+        // states, and blurred less the less it bends (the glTF Sample Viewer's rule).
         vec3 through = refraction.weight;
         if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
         radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));

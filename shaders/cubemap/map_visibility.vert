@@ -24,8 +24,9 @@ bool drawn(vec3 a, vec3 b, vec3 c) {
     if (params.shadow != 0u) return !transmits;
     const uint index = instances[surface.x].info.first_object + triangle_objects[surface.y];
     const GpuObject object = objects[index];
-    // A probe inside another closed object shall not see its inside: of an object whose box it stands in, only front faces
-    // count. Of all others both sides do, since an open sheet has no back; so they do where the back can be looked through.
+    // A probe inside another closed object must not see its inside: of an object whose box contains the probe, only
+    // front faces count. Of all others both sides do, since an open sheet has no back; so they do where the back can be
+    // looked through.
     const bool inside = all(greaterThanEqual(frame[0].eye, object.lower)) && all(lessThanEqual(frame[0].eye, object.upper));
     const bool back = dot(cross(b - a, c - a), a) >= 0.0 != (instances[surface.x].mirrored != 0u);
     return index != params.left_out && (transmits || !inside || !back);

@@ -1,4 +1,4 @@
-// The a-buffer on devices whose fragments know no subgroups: an atomic each.
+// The a-buffer on devices whose fragment shaders have no subgroup operations: one atomic each.
 #version 460
 #include "common/common.glsl"
 #include "ldc/ldc_params.h"

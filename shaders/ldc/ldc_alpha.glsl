@@ -5,8 +5,8 @@
 #include "common/alpha_test.glsl"
 #include "ldc/ldc_common.glsl"
 
-/// Has the triangle a surface above the place (u, v) of its LDI? `id`: triangle * 4 + axis. Beside the triangle its nearest
-/// weights count.
+/// Does the triangle have a surface above the place (u, v) of its LDI? `id`: triangle * 4 + axis. Beside the triangle
+/// its nearest weights count.
 bool ldcPresent(CubeGrid grid, uint id, vec2 place) {
     const uint triangle = id >> 2u, axis = id & 3u;
     if (!alphaMasked(triangle)) return true;

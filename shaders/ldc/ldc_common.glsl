@@ -10,7 +10,7 @@
 // Filed this far beyond its own extent, in voxels, so that rounding (coordinates up to 2048) never loses a sample; half of
 // the traversal's slack.
 const float LDC_SLACK = 1e-3;
-// Large triangles are cut into blocks of so many pixels a side.
+// Large triangles are cut into blocks of so many pixels per side.
 const uint LDC_BLOCK = 32;
 // The overlap band: a triangle also goes into a second LDI if its normal's component there is at least
 // this share of the largest. Without it 2-4 % of planar hits leak, with it 0.1-0.3 %.
@@ -158,8 +158,8 @@ uint ldcPixelOfBody(uvec2 pixel, uint axis, uvec3 dims) {
     const uint before = axis == 0u ? 0u : dims.y * dims.z + (axis == 1u ? 0u : dims.z * dims.x);
     return before + peelrayPixelIndex(pixel, uint(peelrayToLdi(vec3(dims), axis).x));
 }
-/// What a half float holds of a number in [0, 1], rounded to nearest even. In integers: compilers take packing and unpacking
-/// one after the other for nothing.
+/// What a half float holds of a number in [0, 1], rounded to nearest even. In integers: compilers remove a packing that
+/// is followed by an unpacking.
 float ldcHalf(float x) {
     if (x < 6.103515625e-5) return roundEven(x * 16777216.0) / 16777216.0;  // subnormal
     const uint bits = floatBitsToUint(x);

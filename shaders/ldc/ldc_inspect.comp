@@ -1,4 +1,4 @@
-// Counts the triangles that have no area or corners that are not finite: the graphics pipeline drops them without a word.
+// Counts the triangles that have no area or corners that are not finite: the graphics pipeline drops them silently.
 #version 460
 #include "ldc/ldc_common.glsl"
 layout(local_size_x = 64) in;

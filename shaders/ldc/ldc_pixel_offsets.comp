@@ -12,6 +12,6 @@ void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= counters[0].cells) return;
     pixel_offsets[params.first_cell + i] = params.first_sample + sums[i].x;
-    // The last entries are no pixels and have no samples: what is before them is all.
+    // The last entries are not pixels and have no samples: the sum before them is the total.
     if (i + 1u == counters[0].cells) counters[0].voxels = sums[i].y;
 }

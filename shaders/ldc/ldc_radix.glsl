@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 
 shared uint heads[256];     // where the next element of a digit goes
-shared uint digits[256];    // the digits of the batch at hand
+shared uint digits[256];    // the digits of the current batch
 shared uint histogram[256];
 
 /// One round: elements [start, start + length) from one buffer to the other.

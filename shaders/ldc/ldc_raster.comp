@@ -48,8 +48,8 @@ bool touchesMany(ivec2 lo, ivec2 hi) {
     return size.x * size.y > LDC_MANY_BLOCKS;
 }
 
-/// Is this a triangle, and no degenerate one, whose bounds hold no pixel's centre in any LDI? Most of a fine mesh are: they need not be
-/// projected.
+/// Is this a triangle that is not degenerate and whose bounds contain no pixel's centre in any LDI? Most of a fine mesh
+/// are: they need not be projected.
 bool missesCentres(CubeGrid grid, vec3 a, vec3 b, vec3 c) {
     const vec3 lower = (min(a, min(b, c)) - grid.origin) * grid.inv_voxel - (0.5 + 2.0 * LDC_SLACK);
     const vec3 upper = (max(a, max(b, c)) - grid.origin) * grid.inv_voxel - (0.5 - 2.0 * LDC_SLACK);

@@ -1,4 +1,4 @@
-// Traces a queue of rays in the cubes, four rays a thread (by pixel only).
+// Traces a queue of rays in the cubes, four rays per thread (by pixel only).
 #version 460
 #include "common/common.glsl"
 #include "common/ray.h"
@@ -14,7 +14,7 @@ void main() {
     PeelrayRay own_rays[4];
     uvec2 own[4];
     for (int k = 0; k < 4; k++) {
-        // A ray that there is none of becomes one that misses.
+        // A ray that does not exist becomes one that misses.
         const uint i = min(first + uint(k), count - 1u);
         const Ray ray = rays[i];
         own_rays[k] = PeelrayRay(ray.origin, ray.tmin, ray.direction, first + uint(k) < count ? ray.tmax : ray.tmin);

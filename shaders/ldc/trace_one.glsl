@@ -1,4 +1,4 @@
-// Traces a queue of rays in the cubes, a ray a thread.
+// Traces a queue of rays in the cubes, one ray per thread.
 #include "common/common.glsl"
 #include "common/ray.h"
 #include "ldc/trace_params.h"

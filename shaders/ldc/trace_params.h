@@ -28,7 +28,7 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 68);
 
-/// What the rays of one kind cost in all (shaders/counting.glsl).
+/// What the rays of one kind cost in all (shaders/common/counting.glsl).
 struct CountTotals {
     uint rays;
     PeelrayCounts low;  ///< of sums in 64 bits

@@ -4,7 +4,7 @@
 
 const PeelrayBox NO_BOX = PeelrayBox(vec3(1e30), 0u, vec3(-1e30), 0u);
 
-/// Place of a point of [0, 1]³ on the Morton curve of 2^bits cells a side.
+/// Place of a point of [0, 1]³ on the Morton curve of 2^bits cells per side.
 uint mortonCode(vec3 p, uint bits) {
     const float cells = float(1u << bits);
     const uvec3 cell = uvec3(clamp(p * cells, vec3(0), vec3(cells - 1.0)));

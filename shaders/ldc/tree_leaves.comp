@@ -12,7 +12,7 @@ BUFFER(readonly, 3, uint, unsorted_instances)
 BUFFER_ALIGNED(writeonly, 4, PeelrayBox, instance_boxes)
 
 /// A bucket that holds more is left in the order in which the atomics ran: counting would take too long, and the order
-/// decides nothing but which of two coincident surfaces of two instances is seen.
+/// only decides which of two coincident surfaces of two instances is seen.
 const uint LONGEST_BUCKET = 8192u;
 
 void main() {

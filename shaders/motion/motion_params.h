@@ -8,7 +8,7 @@
 namespace peelray {
 #endif
 
-/// A primitive whose vertices are computed anew for every moment.
+/// A primitive whose vertices are computed for every moment.
 struct DeformPiece {
     uint first_group;  ///< of 64 vertices
     uint vertices;
@@ -57,7 +57,7 @@ struct WaterParams {
 };
 SHARED_SIZE(WaterParams, 52);
 
-/// Something that swims, in a moment.
+/// Something that floats, at a moment.
 struct GpuFloat {
     uint instance;
     vec2 at;       ///< x, z

@@ -1,4 +1,4 @@
-// Where things that swim stand: on the mean height and slope of the water under them.
+// Where floating bodies are: on the mean height and slope of the water under them.
 #version 460
 #include "common/common.glsl"
 #include "common/instance.h"

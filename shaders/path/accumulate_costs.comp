@@ -1,4 +1,5 @@
-// Adds what a band's rays cost to the sums of its pixels; not if a queue overflowed, for then the band is done again.
+// Adds what a band's rays cost to the sums of its pixels; not if a queue overflowed, since then the band is rendered
+// again.
 #version 460
 #include "common/common.glsl"
 #include "path/frame.h"

@@ -11,7 +11,7 @@ namespace peelray {
 struct GpuLight {
     vec3 position;
     uint kind;       ///< 0 directional, 1 point, 2 spot
-    vec3 direction;  ///< unit, the way the light travels
+    vec3 direction;  ///< unit, the direction in which the light travels
     float range;     ///< world units
     vec3 color;
     float cone_scale;  ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)

@@ -53,7 +53,7 @@ vec3 lampLight(uint index, Surface s, GpuMaterial m, vec3 view, out vec3 directi
 vec3 skyLight(Surface s, GpuMaterial m, vec3 view) {
     vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
     if (diffuse == vec3(0)) return vec3(0);
-    // What the surface mirrors does not reach its body: the share that scatter.comp gives to the reflection.
+    // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
     diffuse *= 1.0 - (m.roughness < MIRROR_ROUGHNESS ? vec3(fresnelDielectric(cosine, m.ior))
                                                      : environmentBrdf(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), m.roughness, cosine));

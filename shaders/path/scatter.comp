@@ -146,8 +146,8 @@ void reserve() {
     }
 }
 
-/// Workgroups for the next level's rays and for the shadow rays so far. None where something did not fit: all is done again then, and
-/// all that goes on is the counting of shadow rays.
+/// Workgroups for the next level's rays and for the shadow rays so far. None where something did not fit: everything is
+/// done again then, and only the counting of shadow rays goes on.
 void countGroups() {
     const uint overflow = atomicOr(queue[QUEUE_OVERFLOW], 0u);
     if (params.level < frame[0].last_level)

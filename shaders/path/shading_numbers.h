@@ -34,7 +34,7 @@
 #define FLATTEST_START 4.0
 // Slopes below this count as this.
 #define LEAST_SLOPE 1e-6
-// An alpha this little below the cutoff reaches it: rounding makes no holes where both are equal.
+// An alpha this little below the cutoff counts as reaching it: rounding makes no holes where both are equal.
 #define ALPHA_ROUNDING 1e-6
 
 // What random numbers are for.

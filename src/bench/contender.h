@@ -22,7 +22,8 @@ enum class Claim : uint8_t {
 /// Bytes held by each structure, by its name; scratch memory included.
 using MemoryUse = std::vector<std::pair<std::string, uint64_t>>;
 
-/// A structure over one scene's triangles and the rays that are traced in it. It is made whole: built, or ready to be.
+/// A structure over one scene's triangles and the rays that are traced in it. It is complete once constructed: built,
+/// or ready to be built.
 class RayContender {
   public:
     virtual ~RayContender() = default;
@@ -33,7 +34,7 @@ class RayContender {
     /// The side of a voxel of Claim::voxel, world units; 0: there are none.
     virtual double voxel() const { return 0; }
 
-    /// Times building everything anew from the vertices as they are.
+    /// Times building everything again from the vertices as they are.
     virtual Timing time_build(uint32_t runs) = 0;
     /// Times bringing the structure up to date where only vertices moved; no runs: it has no such way.
     virtual Timing time_refit(uint32_t /*runs*/) { return {}; }

@@ -22,7 +22,7 @@ class Buffer {
 
     Buffer() = default;
     /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name`
-    /// tells for what.
+    /// says what it is for.
     Buffer(Device& device, std::string name, uint64_t bytes, Where where = Where::device);
     ~Buffer() { reset(); }
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }

@@ -46,7 +46,7 @@ std::vector<Binding> if_used(std::span<const Binding> bindings);
 struct Groups {
     uint32_t x = 1, y = 1, z = 1;
 };
-/// Workgroups for `items` of them, `per_group` each, in rows as shaders/common.glsl counts them (GLOBAL_INDEX).
+/// Workgroups for `items` of them, `per_group` each, in rows as shaders/common/common.glsl counts them (GLOBAL_INDEX).
 inline Groups groups_for(uint64_t items, uint32_t per_group) {
     const uint64_t groups = (items + per_group - 1) / per_group, row = 32768;
     return {uint32_t(groups < row ? groups : row), uint32_t((groups + row - 1) / row)};

@@ -41,7 +41,7 @@ struct DeviceOptions {
 /// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
 std::vector<DeviceInfo> list_devices();
 
-/// What a device may offer beyond what all passes need; on where it is there.
+/// What a device may offer beyond what all passes need; true where it is available.
 struct DeviceFeatures {
     bool geometry_shader = false, tessellation_shader = false;
     bool fragment_stores = false;        ///< fragment shaders write buffers, with atomics
@@ -111,7 +111,7 @@ class Device {
     /// Each piece of it, in the order in which they were made: what is held now, and what was at the peak.
     std::vector<Allocation> allocations() const;
     const std::vector<Allocation>& peak_allocations() const { return at_peak_; }
-    /// Counts the peak anew from what is allocated now.
+    /// Starts counting the peak again from what is allocated now.
     void reset_peak();
 
     // For the classes of this folder.

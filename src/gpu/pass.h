@@ -109,8 +109,8 @@ class Pass : public PassBase {
   public:
     Pass(Device& device, VkPipelineCache cache, std::string_view shader, const Constants& constants);
 
-    /// What the driver tells of the compiled shader (registers, spills, ...), as it calls it; empty where it tells
-    /// nothing (DeviceFeatures::executable_properties).
+    /// What the driver reports about the compiled shader (registers, spills, ...), under its own names; empty where it
+    /// reports nothing (DeviceFeatures::executable_properties).
     std::vector<std::pair<std::string, double>> statistics() const;
 };
 

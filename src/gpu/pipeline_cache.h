@@ -9,8 +9,8 @@
 namespace peelray {
 
 /// Loads $XDG_CACHE_HOME/peelray/pipelines-VENDOR-DEVICE-UUID.bin (~/.cache without the variable) when made and saves
-/// it when destroyed. A missing, truncated, corrupt or foreign file is ignored; a folder that cannot be written is no
-/// error: the next start compiles again, that is all.
+/// it when destroyed. A missing, truncated, corrupt or foreign file is ignored; a folder that cannot be written to is
+/// not an error: the next start just compiles again.
 class PipelineCache {
   public:
     PipelineCache(Device& device, bool on_disk);

@@ -9,14 +9,14 @@ namespace peelray {
 /// How a ray tracing pass is put together: every ray has the same shaders.
 struct RaySetup {
     std::string rays;          ///< name of the shaders of misses and hits; empty: the pass's own
-    bool nearest = true;       ///< RAYS.rchit is told of the nearest hit
-    bool any = false;          ///< RAYS.rahit is asked about hits on what is not opaque
+    bool nearest = true;       ///< RAYS.rchit is called for the nearest hit
+    bool any = false;          ///< RAYS.rahit is called for hits on what is not opaque
     Constants constants = {};  ///< of all stages
 
     auto operator<=>(const RaySetup&) const = default;
 };
 
-/// A ray tracing pass (see Commands::trace): NAME.rgen starts the rays, RAYS.rmiss is told of misses; the first miss
+/// A ray tracing pass (see Commands::trace): NAME.rgen starts the rays, RAYS.rmiss is called for misses; the first miss
 /// shader and the first hit group are all there are. Shaders of hits start no rays.
 class RayPass : public PassBase {
   public:

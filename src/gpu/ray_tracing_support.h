@@ -7,7 +7,7 @@ namespace peelray {
 
 bool extension_available(VkPhysicalDevice device, const char* name);
 
-/// Asks a device, and then turns on what of it is used.
+/// Queries a device, and then enables the features that are used.
 struct RayTracingSupport {
     explicit RayTracingSupport(VkPhysicalDevice device);
 

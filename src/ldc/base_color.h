@@ -1,4 +1,4 @@
-// What tells the base colour of triangles and its alpha, on the device.
+// What gives the base colour of triangles and its alpha, on the device.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@ namespace peelray {
 
 struct TriangleBuffers;
 
-/// The bindings of shaders/base_color_buffers.glsl.
+/// The bindings of shaders/common/base_color_buffers.glsl.
 struct BaseColorBuffers {
     Buffer materials;           ///< GpuMaterial each
     Buffer texture_infos;       ///< GpuTexture each

@@ -19,7 +19,7 @@ void settle_capacity(uint32_t& capacity, uint32_t needed) {
 
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most) {
     if (needed <= capacity) return false;
-    // The reserve is a wish, the need is not: what exceeds the device's limit fails where memory is asked for.
+    // The reserve is optional, the need is not: what exceeds the device's limit fails where memory is allocated.
     const uint64_t reserve = std::min<uint64_t>(uint64_t(needed) * 3 / 2 + 64, 0x7fffffffu);
     capacity = uint32_t(std::max<uint64_t>(needed, std::min(reserve, most)));
     return true;

@@ -1,4 +1,4 @@
-// A build in two stages: a rasteriser makes fragments of triangles, an order files them as a traversal reads them.
+// A build in two stages: a rasteriser makes fragments of triangles, an order stores them as a traversal reads them.
 // Private to src/ldc.
 #pragma once
 
@@ -36,7 +36,7 @@ struct BuildState {
     bool tests_alpha(const TriangleBuffers& triangles) const {
         return triangles.masks && cubes.sampling() != Sampling::conservative;
     }
-    /// Counts the workgroups of the indirect passes anew.
+    /// Counts the workgroups of the indirect passes again.
     void record_groups(Commands& commands) const;
 };
 
@@ -50,10 +50,10 @@ class BuildStage {
     /// Clears what the build counts in. Runs before all stages.
     virtual void clear(Commands&, const BuildState&) {}
     virtual void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) = 0;
-    /// After the submission: raises the capacities that did not do; true if there were any.
+    /// After the submission: raises the capacities that were too small; true if there were any.
     virtual bool grow(BuildState& state, const LdcCounters& counts) = 0;
     /// After the first build that fitted: lowers the capacities that were guessed to what is needed, with a reserve,
-    /// for passes run as often as they say. The buffers stay.
+    /// since passes run as often as they say. The buffers stay.
     virtual void settle(BuildState&, const LdcCounters&) {}
     /// Bytes of scratch memory held.
     virtual uint64_t bytes() const = 0;
@@ -65,7 +65,7 @@ uint32_t bounded(const BuildState& state, uint64_t count, uint64_t bytes_each);
 inline uint64_t left_of(uint64_t most, uint64_t used) {
     return most > used ? most - used : 0;
 }
-/// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; tells whether it did.
+/// Raises `capacity` if `needed` exceeds it, to half as much more if `most` allows; returns whether it did.
 bool grow_capacity(uint32_t& capacity, uint32_t needed, uint64_t most);
 
 /// Lowers `capacity` to an eighth more than what was needed.

@@ -1,4 +1,4 @@
-// Builds cubes: rasterises bodies into fragments and files them in the order that the traversal reads.
+// Builds cubes: rasterises bodies into fragments and stores them in the order that the traversal reads.
 #pragma once
 
 #include <memory>

@@ -7,7 +7,7 @@
 
 namespace peelray {
 
-/// Throws Error with what would work instead unless a device of these abilities builds such cubes of `resolution`
+/// Throws Error with what would work instead unless a device with these abilities can build such cubes of `resolution`
 /// voxels along the longest side.
 void check_builder(const DeviceFeatures& features, const VkPhysicalDeviceLimits& limits, const std::string& device,
                    const CubeLayout& layout, Sampling sampling, uint32_t resolution);
@@ -25,7 +25,7 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
 /// The setup of a pass whose fragments are tested for holes (shaders/ldc/ldc_routed_alpha.glsl).
 RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles);
 
-/// The power of two that holds LDIs of so many pixels a side.
+/// The power of two that holds LDIs of so many pixels per side.
 uint32_t viewport_side(uint32_t resolution);
 
 /// Counts the triangles that the pipeline drops.

@@ -7,8 +7,8 @@
 namespace peelray {
 
 /// Bodies are peeled one after the other into the same targets, three layers of two colours: normal and depth; base
-/// colour and triangle id. The depth complexity is counted first. So many passes must be recorded that it fits: as many
-/// as it was last time, and some more, which draw nothing if they are not needed.
+/// colour and triangle id. The depth complexity is counted first. Enough passes must be recorded for it: as many as
+/// there were layers last time, and some more, which draw nothing if they are not needed.
 class PeelRasterizer : public BuildStage {
   public:
     PeelRasterizer(Device& device, const Cubes& cubes);

@@ -139,7 +139,7 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
         const uint32_t left = tile % tiles.columns * tile_size, top = tile / tiles.columns * tile_size;
-        // Reports come by the row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
+        // Reports come once per row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
         for (uint32_t row = 0; row < std::min(tile_size, picture.height - top) && !tiles.stop; row++) {
             for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
                 pixel(picture, context, view, x, top + row, rays);
@@ -198,7 +198,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                 done++;
             });
     } catch (const std::system_error&) {
-        // No more threads to be had: those there are do the work.
+        // No more threads can be started: those that run do the work.
     }
     guarded([&] { share(progress); });
     // The others' last tiles may take long: whoever listens for interrupts goes on listening.

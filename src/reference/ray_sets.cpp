@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t bounces = 4, ambient_samples = 4;
 constexpr double glass_index = 1.5;
 
-/// The parts of the sets, in their order: of refraction one a bounce, of ambient one a sample.
+/// The parts of the sets, in their order: of refraction one per bounce, of ambient one per sample.
 enum Part : size_t {
     primary_part,
     mirror_part,

@@ -36,8 +36,8 @@ struct StartedRay {
     float tmax;
 };
 
-/// Where the frame lets a ray start (leavingRay in shaders/frame.glsl). `offset`: height above its surface from which
-/// it counts, world units; 0 unless hits know surfaces only to a voxel.
+/// Where the frame lets a ray start (leavingRay in shaders/path/frame.glsl). `offset`: height above its surface from
+/// which it counts, world units; 0 unless hits know surfaces only to a voxel.
 StartedRay leaving_ray(const SurfaceRay& ray, float offset);
 
 /// From where and with which light the sets are made.

@@ -1,4 +1,4 @@
-// The views through the six faces of a cube, in the order and orientation of shaders/cubemap.glsl.
+// The views through the six faces of a cube, in the order and orientation of shaders/cubemap/cubemap.glsl.
 #pragma once
 
 #include "path/frame.h"

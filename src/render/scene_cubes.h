@@ -20,9 +20,9 @@ struct CubeChoice {
     bool operator==(const CubeChoice&) const = default;
 };
 
-/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many a metre for smaller ones, but
-/// at least a quarter of it.
-/// `fixed`: of the first so many bodies they are built once, of the others for every frame.
+/// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many per metre for smaller ones,
+/// but at least a quarter of it. `fixed`: of the first so many bodies they are built once, of the others for every
+/// frame.
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed);
 
 class SceneCubes {

@@ -80,7 +80,7 @@ constexpr auto names_of(Routing) {
 enum class Batch : uint8_t {
     none,    ///< one sample, one ray
     layers,  ///< four samples of a pixel
-    rays,    ///< four rays a thread: `peelray trace` and the bounces of a picture, not its shadow rays
+    rays,    ///< four rays per thread: `peelray trace` and the bounces of a picture, not its shadow rays
 };
 constexpr auto names_of(Batch) {
     return std::to_array<Named<Batch>>({{Batch::none, "none"}, {Batch::layers, "layers"}, {Batch::rays, "rays"}});
@@ -126,8 +126,8 @@ enum class RayKind : uint8_t {
     mirror,      ///< reflected where a primary ray hits, as if everything were a perfect mirror
     refraction,  ///< up to four refractions or total reflections in a row, as if everything were glass of index 1.5
     shadow,      ///< from where primary rays hit to the light, where the surface faces it
-    ambient,     ///< four a hit, cosine-distributed around the normal: is the sky seen?
-    diffuse,     ///< one a hit, cosine-distributed: what is seen?
+    ambient,     ///< four per hit, cosine-distributed around the normal: is the sky seen?
+    diffuse,     ///< one per hit, cosine-distributed: what is seen?
 };
 constexpr auto names_of(RayKind) {
     return std::to_array<Named<RayKind>>({{RayKind::primary, "primary"},
