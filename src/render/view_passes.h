@@ -9,9 +9,8 @@ namespace peelray {
 
 /// What a view is drawn into.
 struct ViewTarget {
-    Buffer frame;  ///< one Frame: the view's constants
-    Buffer
-        visibility;  ///< two uint32 of what each pixel sees, row by row; second ~0: nothing (shaders/view/seen.glsl)
+    Buffer frame;       ///< one Frame: the view's constants
+    Buffer visibility;  ///< two uint32 of what each pixel sees, row by row; second ~0: nothing (shaders/view/seen.glsl)
     Image2D color, depth;
 
     explicit ViewTarget(Device& device) : frame(device, "frame constants", sizeof(Frame)) {}
