@@ -364,7 +364,7 @@ void Renderer::Impl::record_shadows_khr() {
     const LightQueue& lights = queues.lights();
     // What the shaders need of surfaces depends on whether light passes some and whether some have holes.
     std::vector<Binding> bindings = if_used(surface_bindings(scene, view.frame, {}));
-    for (const Binding& binding : {Binding("shadow_rays", lights.rays), Binding("shadow_skip", lights.skip),
+    for (const Binding& binding : {Binding("shadow_rays", lights.rays), Binding::if_used("shadow_skip", lights.skip),
                                    Binding("shadow_light", lights.light), Binding("queue", queues.counters())})
         bindings.push_back(binding);
     const RayPass& pass =
