@@ -1,4 +1,4 @@
-// Which parts of a scene that move together share a cube. Private to src/scene.
+// Which parts of a scene that move together share a cube. Private to src/assembly.
 #pragma once
 
 #include <cstdint>

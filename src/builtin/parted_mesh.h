@@ -1,4 +1,4 @@
-// A closed mesh whose triangles belong to parts, cut along the lines where parts meet. Private to src/scene.
+// A closed mesh whose triangles belong to parts, cut along the lines where parts meet. Private to src/builtin.
 #pragma once
 
 #include <algorithm>

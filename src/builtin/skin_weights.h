@@ -1,4 +1,4 @@
-// Which joints pull at the vertices of a skin. Private to src/scene.
+// Which joints pull at the vertices of a skin. Private to src/builtin.
 #pragma once
 
 #include <span>

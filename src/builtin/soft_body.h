@@ -1,5 +1,5 @@
 // Bodies of round pieces that flow into each other: distance fields with soft unions (Hart, Sphere Tracing, 1996; the
-// blend is Quilez' quadratic one). Private to src/scene.
+// blend is Quilez' quadratic one). Private to src/builtin.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The figure of builtin:walker: its skeleton, its skin and its gait. Private to src/scene.
+// The figure of builtin:walker: its skeleton, its skin and its gait. Private to src/builtin.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The shape that the figure's skin is made of. Private to src/scene.
+// The shape that the figure's skin is made of. Private to src/builtin.
 #pragma once
 
 #include "builtin/soft_body.h"

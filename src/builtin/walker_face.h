@@ -1,4 +1,4 @@
-// The figure's eyes, brows and mouth. Private to src/scene.
+// The figure's eyes, brows and mouth. Private to src/builtin.
 #pragma once
 
 #include "builtin/polygonise.h"

@@ -1,4 +1,4 @@
-// How the figure stands, walks and waves. Private to src/scene.
+// How the figure stands, walks and waves. Private to src/builtin.
 #pragma once
 
 #include "builtin/walker_pose.h"

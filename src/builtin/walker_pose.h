@@ -1,4 +1,4 @@
-// Poses of the figure: turns of its joints, and legs that reach for the floor. Private to src/scene.
+// Poses of the figure: turns of its joints, and legs that reach for the floor. Private to src/builtin.
 #pragma once
 
 #include "builtin/walker.h"

@@ -1,4 +1,4 @@
-// Morph targets and skins: where a primitive's vertices are now. Private to src/scene.
+// Morph targets and skins: where a primitive's vertices are at a moment.
 #pragma once
 
 #include <span>

@@ -1,7 +1,8 @@
 // Pictures of one scene by any tracer:
 //
 //     PictureArguments settings;
-//     settings.scene = "builtin:glass";
+//     settings.scene = "builtin:walker";
+//     settings.animation = "walk";  // else it stands at rest
 //     Workspace workspace(settings);
 //     const MadePicture made = workspace.render({.time = 0.5});
 //     double ms = made.stats.render.frame_ms;
@@ -26,7 +27,7 @@ struct MadePicture {
 
 /// When and from where a picture is seen.
 struct Shot {
-    std::optional<double> time;  ///< of the animation, seconds; none: the moment that the scene is in
+    std::optional<double> time;  ///< of the animation, if there is one, seconds; none: where the scene is
     double turn = 0;             ///< how far the camera goes around its look point, see turned()
 };
 
