@@ -4,13 +4,14 @@ JOBS ?= $(shell nproc)
 PROGRAM := build/release/peelray
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
-.PHONY: help demo build test clean format check-format packages test-packages
+.PHONY: help demo build test test-long clean format check-format packages test-packages
 .DEFAULT_GOAL := help
 
 help:
-	@echo 'make demo    install what lacks, build, render a built-in scene to out/demo.png'
-	@echo 'make test    install what lacks, build, run all tests, then the CPU-side ones under the sanitizers'
-	@echo 'make build   install what lacks, build $(PROGRAM)'
+	@echo 'make demo    install what is missing, build, render a built-in scene to out/demo.png'
+	@echo 'make test    install what is missing, build, run the tests, then the CPU-side ones under the sanitizers'
+	@echo 'make test-long    what takes too long for that: every ray and scene, every source file compiled by itself'
+	@echo 'make build   install what is missing, build $(PROGRAM)'
 	@echo 'make clean   remove build/ and out/'
 	@echo 'make format  apply clang-format (check-format: only look)'
 
@@ -26,11 +27,19 @@ build: packages
 test: test-packages
 	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset release --parallel $(JOBS)
-	$(CTEST) --test-dir build/release
+	$(CTEST) --test-dir build/release -LE long
 	@echo '== the CPU-side tests once more, under the address and undefined-behaviour sanitizers'
 	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset sanitize --parallel $(JOBS)
 	$(CTEST) --test-dir build/sanitize -L cpu
+
+test-long: test-packages
+	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
+	@cmake --build --preset release --parallel $(JOBS)
+	$(CTEST) --test-dir build/release -L long
+	@echo '== every source file by itself: each must include what it uses'
+	@cmake --preset separate --log-level=NOTICE -DPEELRAY_TESTS=ON
+	@cmake --build --preset separate --parallel $(JOBS)
 
 packages:
 	@scripts/packages.sh packages.txt

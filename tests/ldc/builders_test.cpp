@@ -2,6 +2,7 @@
 #include "../gpu/device_fixture.h"
 #include "decoded_cube.h"
 #include "decoded_pixels.h"
+#include "effort.h"
 #include "ldc/graphics_raster.h"
 #include "meshes.h"
 #include "single_cube.h"
@@ -217,13 +218,15 @@ class BuildersTest : public DeviceTest {
 };
 
 TEST_F(BuildersTest, SoupsInACubicBox) {
+    const uint32_t count = test::effort(80u, 250u);
     for (const uint32_t resolution : {16u, 64u, 144u})
-        expect_all_same(soup(resolution, resolution == 144 ? 100 : 250, vec3(1), 2.0f / float(resolution)), resolution);
+        expect_all_same(soup(resolution, resolution == 144 ? count * 2 / 5 : count, vec3(1), 2.0f / float(resolution)),
+                        resolution);
 }
 
 TEST_F(BuildersTest, SoupsInLongAndFlatBoxes) {
-    expect_all_same(soup(1, 150, vec3(1, 0.3f, 0.6f), 2.0f / 64), 64);
-    expect_all_same(soup(2, 100, vec3(0.02f, 5, 0.9f), 10.0f / 128), 128);
+    expect_all_same(soup(1, test::effort(60, 150), vec3(1, 0.3f, 0.6f), 2.0f / 64), 64);
+    expect_all_same(soup(2, test::effort(40, 100), vec3(0.02f, 5, 0.9f), 10.0f / 128), 128);
 }
 
 TEST_F(BuildersTest, FarFromTheOrigin) {
@@ -238,7 +241,8 @@ TEST_F(BuildersTest, AFloorOfTwoTriangles) {
 }
 
 TEST_F(BuildersTest, BuiltInScenes) {
-    for (const char* name : {"builtin:teapots", "builtin:blob:5000"}) {
+    using Names = std::vector<const char*>;
+    for (const char* name : test::effort(Names{"builtin:blob:5000"}, Names{"builtin:teapots", "builtin:blob:5000"})) {
         SCOPED_TRACE(name);
         expect_all_same(from_scene(name), 64);
     }
@@ -258,21 +262,22 @@ TEST_F(BuildersTest, AgreeWithTheCpuByPixel) {
 }
 
 TEST_F(BuildersTest, CoplanarFragmentsAreAllThere) {
-    // A thousand of the same triangle, some turned over, with others before, between and behind.
+    // Hundreds of the same triangle, some turned over, with others before, between and behind.
+    const int count = test::effort(300, 1000);
     Mesh3 mesh;
     mesh.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
     const vec3 a(-0.5f, -0.5f, 0.1f), b(0.5f, -0.4f, 0.15f), c(0, 0.5f, 0.2f);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < count; i++) {
         if (i % 3)
             mesh.add(a, b, c);
         else
             mesh.add(b, a, c);
-        if (i % 100 == 50) mesh.add(a + vec3(0, 0, 0.01f * float(i - 500)), b, c);
+        if (i % 100 == 50) mesh.add(a + vec3(0, 0, 0.01f * float(i - count / 2)), b, c);
     }
     expect_all_same(mesh, 16, std::span(kGraphics, 2));
     for (const bool half : {false, true}) {
         const Built built = build(mesh, 16, Sampling::centre, layout_of(kGraphics[2], Traversal::two_level, half));
-        EXPECT_GE(built.counts.complexity, 1000u);
+        EXPECT_GE(built.counts.complexity, uint32_t(count));
         EXPECT_EQ(built.counts.passes, built.counts.complexity);
         expect_right(mesh, built, Sampling::centre, half);
     }
@@ -312,20 +317,21 @@ TEST_F(BuildersTest, PassesFollowTheLayersOneByOne) {
 
 TEST_F(BuildersTest, ThousandsOfSliversInOnePixel) {
     // As around a pole: the pixel at the pole sees all of them.
+    const int slivers = test::effort(1100, 2500);
     Mesh3 mesh;
     mesh.add({-1, -1, -1}, {1, 1, 1}, {-1, 1, -1});
-    for (int i = 0; i < 2500; i++) {
-        const float p = 6.2831853f * float(i) / 2500, q = p + 0.4f, y = 0.3f + 1e-4f * float(i % 7);
+    for (int i = 0; i < slivers; i++) {
+        const float p = 6.2831853f * float(i) / float(slivers), q = p + 0.4f, y = 0.3f + 1e-4f * float(i % 7);
         mesh.add({0.05f, y, 0.05f}, {0.05f + 0.3f * std::cos(p), y, 0.05f + 0.3f * std::sin(p)},
                  {0.05f + 0.3f * std::cos(q), y, 0.05f + 0.3f * std::sin(q)});
     }
-    for (int i = 0; i < 2200; i++)
+    for (int i = 0; i < slivers - 300; i++)
         mesh.add({-0.6f, 0.6f, -0.6f}, {-0.4f, 0.6f, -0.6f}, {-0.5f, 0.6f + 1e-5f * float(i), -0.35f});
     expect_all_same(mesh, 16, std::span(kGraphics, 2));
     const Built compute = build(mesh, 16, Sampling::centre, layout_of({}, Traversal::two_level));
     const Built peel = build(mesh, 16, Sampling::centre, layout_of(kGraphics[2], Traversal::two_level));
     expect_same(mesh, compute.body, compute.samples, peel.samples, Sampling::centre);
-    EXPECT_GT(peel.counts.complexity, 2000u);
+    EXPECT_GT(peel.counts.complexity, uint32_t(slivers) * 4 / 5);
 }
 
 TEST_F(BuildersTest, DegenerateAndInvalidTrianglesAreCountedAndDropped) {

@@ -3,6 +3,7 @@
 
 #include "../gpu/device_fixture.h"
 #include "builtin/shapes.h"
+#include "effort.h"
 #include "ldc/cube_builder.h"
 #include "ldc/trace_params.h"
 #include "ldc/tracer.h"
@@ -234,7 +235,7 @@ TEST_F(InstancesTest, OfAnyNumberAreFoundByRays) {
         const auto placed = scatter(count, 3 * std::cbrt(float(count)), count);
         const auto world = place(placed);
         expect_hierarchy(*world);
-        expect_right(*world, flat(placed), 4000);
+        expect_right(*world, flat(placed), test::effort(800, 4000));
     }
 }
 
@@ -255,7 +256,7 @@ TEST_F(InstancesTest, OfBareBodiesAreFoundByRaysAndHaveNoCube) {
             for (size_t i = 0; i < placed.size(); i += 2) placed[i].body = 3 + uint32_t(i / 2 % 3);
         const auto world = place(placed);
         expect_hierarchy(*world);
-        expect_right(*world, flat(placed), 4000);
+        expect_right(*world, flat(placed), test::effort(800, 4000));
     }
     // As much is built as without them.
     const auto with = place({{0, still}}), boxed = [&] {
@@ -318,7 +319,7 @@ TEST_F(InstancesTest, InOnePlaceAreFoundToo) {
         auto placed = scatter(count, 0, 5);
         const auto world = place(placed);
         expect_hierarchy(*world);
-        expect_right(*world, flat(placed), 500);
+        expect_right(*world, flat(placed), test::effort(100, 500));
     }
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "../gpu/device_fixture.h"
+#include "effort.h"
 #include "loaders/load.h"
 #include "ray_sets.h"
 #include "reference/oracle.h"
@@ -85,9 +86,9 @@ TEST_P(ExactOnScene, AgreesWithOracle) {
     }
     const Geometry geometry = flatten(load_scene(name));
     fmt::print("{}: {} triangles\n", GetParam(), geometry.triangles.size());
-    // 4·10^5 rays per scene; PEELRAY_RAYS_PER_KIND asks for more.
+    // In `make test-long` 4·10^5 rays per scene; PEELRAY_RAYS_PER_KIND asks for more.
     const char* rays = std::getenv("PEELRAY_RAYS_PER_KIND");
-    compare(geometry, 256, rays ? std::strtoull(rays, nullptr, 10) : 100'000);
+    compare(geometry, 256, rays ? std::strtoull(rays, nullptr, 10) : test::effort(10'000, 100'000));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactOnScene,
@@ -103,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExactOnScene,
 
 TEST_F(TraceTest, ExactDoesNotDependOnResolution) {
     const Geometry geometry = flatten(load_scene("builtin:blob:20000"));
-    for (uint32_t resolution : {16u, 48u, 100u, 777u}) compare(geometry, resolution, 20'000);
+    for (uint32_t resolution : {16u, 48u, 100u, 777u}) compare(geometry, resolution, test::effort(4000, 20'000));
 }
 
 TEST_F(TraceTest, ExactFarFromTheWorldsOriginAndAtOddScales) {
@@ -245,7 +246,7 @@ TEST_F(TraceTest, PlanarHitsAreOffByLessThanAVoxel) {
     TracedBody scene(device(), geometry, 1024, HitTest::planar);
     const Oracle oracle(geometry);
     test::RaySource source(geometry, 9);
-    std::vector<Ray> rays(200'000);
+    std::vector<Ray> rays(test::effort(50'000, 200'000));
     for (Ray& ray : rays) ray = source.make(RayKind::uniform);
     const auto hits = scene.trace(rays);
     std::atomic<size_t> off{0}, hit{0};

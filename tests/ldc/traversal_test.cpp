@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../gpu/device_fixture.h"
+#include "effort.h"
 #include "loaders/load.h"
 #include "ray_sets.h"
 #include "traced_body.h"
@@ -98,13 +99,14 @@ TEST_F(TraversalTest, ExactHitsAreTheSameBitForBit) {
     for (const char* name : {"builtin:blob:20000", "builtin:teapots"})
         for (uint32_t resolution : {48u, 256u}) {
             SCOPED_TRACE(fmt::format("{} at {}", name, resolution));
-            expect_same(flatten(load_scene(name)), resolution, resolution < 100 ? 400 : 1500);
+            const size_t rays = resolution < 100 ? test::effort(100, 400) : test::effort(300, 1500);
+            expect_same(flatten(load_scene(name)), resolution, rays);
         }
 }
 
 TEST_F(TraversalTest, ThousandsOfLayersAndTrianglesWithoutArea) {
     const Geometry geometry = crowd();
-    expect_same(geometry, 64, 150);
+    expect_same(geometry, 64, test::effort(25, 150));
     TracedBody pixels(device(), geometry, 64, HitTest::exact, {Traversal::two_level});
     EXPECT_GE(pixels.cube().counts().longest, 1500u) << "the depth complexity";
     EXPECT_EQ(pixels.cube().counts().degenerate, 1500u);
@@ -215,7 +217,7 @@ class SampleHits : public TraversalTest, public ::testing::WithParamInterface<Hi
 TEST_P(SampleHits, FollowTheDefinition) {
     const HitTest test = GetParam();
     const Geometry geometry = flatten(load_scene("builtin:blob:600"));
-    const std::vector<Ray> rays = some_rays(geometry, 500, 0.05);
+    const std::vector<Ray> rays = some_rays(geometry, test::effort(120, 500), 0.05);
     const float tolerance = 0.02f;
     std::vector<std::vector<Hit>> answers;
     std::vector<PixelSample> samples;
@@ -256,7 +258,7 @@ TEST_P(SampleHits, AreTheSameBitForBitByPixelAndAlmostByVoxel) {
     const HitTest test = GetParam();
     const Geometry geometry = flatten(load_scene("builtin:teapots"));
     const float tolerance = 0.02f;
-    const std::vector<Ray> rays = some_rays(geometry, 10'000, 0.05);
+    const std::vector<Ray> rays = some_rays(geometry, test::effort(3000, 10'000), 0.05);
     std::vector<Hit> first;
     double voxel = 0;
     for (const CubeLayout& layout : by_pixel()) {
@@ -284,7 +286,7 @@ TEST_P(SampleHits, AreTheSameBitForBitByPixelAndAlmostByVoxel) {
 
 TEST_P(SampleHits, AnyHitIsAHit) {
     const Geometry geometry = flatten(load_scene("builtin:blob:20000"));
-    const std::vector<Ray> rays = some_rays(geometry, 5000, 0.05);
+    const std::vector<Ray> rays = some_rays(geometry, test::effort(1000, 5000), 0.05);
     for (const CubeLayout& layout : {CubeLayout{Traversal::two_level}, CubeLayout{Traversal::mipmap}, CubeLayout{}}) {
         TracedBody body(device(), geometry, 128, GetParam(), layout, 0.02f);
         const std::vector<Hit> nearest = body.trace(rays), any = body.trace(rays, true);
