@@ -129,7 +129,7 @@ TEST_F(MaskedCubeTest, RaysAgreeWithTheOracle) {
     RayScene scene(device(), scene_, rest, assembly, {});
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel, RayKind::on_surface}) {
         test::RaySource source(geometry_, 99);
-        std::vector<Ray> rays(test::effort(8000, 50'000));
+        std::vector<Ray> rays(test::effort(25'000, 50'000));
         for (Ray& ray : rays) ray = source.make(kind);
         const Buffer ray_buffer = upload(rays), hit_buffer(device(), "file hits", rays.size() * sizeof(FileHit));
         const auto trace = [&](bool any_hit) {
