@@ -119,11 +119,12 @@ TEST_F(Video, WithoutFfmpegNothingIsRendered) {
 }
 
 TEST_F(Video, WhatAVideoCannotDo) {
+    const auto variables = fake("exit 1\n");  // refused before it starts, and whether or not a real one is installed
     const auto refused = [&](const Words& more, const std::string& says, const std::string& name = "v.mp4") {
         Words all = words(name, {"--frames", "0:3"});
         if (more[0] == "--size") all.erase(all.begin() + 4, all.begin() + 6);
         all.insert(all.end(), more.begin(), more.end());
-        expect_refused(run(all), 1, says);
+        expect_refused(run(all, variables), 1, says);
     };
     refused({"--resume"}, "--resume needs a file for each frame, a video is one: render pictures (-o NAME_%05d.png)");
     refused({"--shard", "0/2"}, "--shard needs a file for each frame");
