@@ -1,0 +1,87 @@
+// The files that a command is about to write, and those that it did.
+#include "cli/outputs.h"
+
+#include "cli/picture_files.h"
+#include "image/image.h"
+#include "image/temp_folder.h"
+#include "settings/aovs.h"
+
+namespace peelray {
+namespace {
+
+namespace fs = std::filesystem;
+using Paths = std::vector<fs::path>;
+
+class Outputs : public TempFolder {};
+
+TEST_F(Outputs, EachIsWrittenOnce) {
+    EXPECT_NO_THROW(check_outputs({folder / "a", folder / "b"}, {folder / "c"}));
+    expect_error([&] { check_outputs({folder / "a", folder / "b", folder / "a"}, {}); }, "would be written twice");
+    expect_error([&] { check_outputs({folder / "a", folder / "." / "a"}, {}); }, "would be written twice");
+    fs::create_directory(folder / "in");
+    expect_error([&] { check_outputs({folder / "a", folder / "in" / ".." / "a"}, {}); }, "would be written twice");
+    put("a", "");
+    fs::create_symlink(folder / "a", folder / "link");
+    expect_error([&] { check_outputs({folder / "a", folder / "link"}, {}); }, "would be written twice");
+}
+
+TEST_F(Outputs, AnInputIsNeverOverwritten) {
+    const fs::path input = put("scene.obj", "v 0 0 0\n");
+    expect_error([&] { check_outputs({input}, {input}); }, "is an input and would be overwritten");
+    fs::create_symlink(input, folder / "link");
+    expect_error([&] { check_outputs({folder / "link"}, {input}); }, "is an input and would be overwritten");
+    EXPECT_NO_THROW(check_outputs({folder / "a"}, {input, ""}));
+    EXPECT_EQ(get(input), "v 0 0 0\n");
+}
+
+TEST_F(Outputs, WhereNothingCanBeWrittenIsSaidBeforehand) {
+    expect_error([&] { check_outputs({folder / "nowhere" / "a"}, {}); }, "nowhere");
+    expect_error([&] { check_outputs({folder}, {}); }, folder.string());
+    EXPECT_EQ(files(), 0u);
+}
+
+TEST(PictureFiles, FormatsFollowFromTheName) {
+    for (const char* name : {"a.png", "a.exr", "a.hdr", "a.PNG", "b.tiff.Exr"})
+        EXPECT_NO_THROW(check_picture_name(name)) << name;
+    for (const char* name : {"a", "a.jpg", "png", ".png", "a.png.", "a.png/b"})
+        expect_error([&] { check_picture_name(name); }, "name it .png, .exr or .hdr");
+}
+
+TEST(PictureFiles, AuxiliaryPicturesStandBesideThePicture) {
+    EXPECT_EQ(aov_paths("x/a.png", Aov::normal), Paths({"x/a.normal.exr"}));
+    EXPECT_EQ(aov_paths("a.b.hdr", Aov::depth), Paths({"a.b.depth.exr"}));
+    size_t with_heat_map = 0;
+    for (const Aov aov : values_of<Aov>()) {
+        const Paths paths = aov_paths("a.png", aov);
+        ASSERT_EQ(paths.size(), cost_field(aov) ? 2u : 1u);
+        EXPECT_EQ(paths[0], fmt::format("a.{}.exr", name_of(aov)));
+        if (!cost_field(aov)) continue;
+        EXPECT_EQ(paths[1], heat_map_path("a.png", aov));
+        with_heat_map++;
+    }
+    EXPECT_EQ(with_heat_map, std::size(kRayCostFields));
+}
+
+TEST_F(Outputs, APictureIsWrittenWithAllThatGoesWithIt) {
+    Picture picture;
+    picture.width = 2;
+    picture.height = 1;
+    picture.radiance = {{0.25f, 0.5f, 1, 1}, {2, 4, 8, 1}};
+    picture.encoded = {0xFF102030, 0xFF405060};
+    picture.aovs.depth = {1.5f, 3};
+    picture.aovs.costs.resize(2);
+    picture.aovs.costs[0].steps = 3;
+    picture.aovs.costs[1].steps = 6;
+    write_picture(picture, {Aov::depth, Aov::cost_steps}, folder / "a.png");
+    write_picture(picture, {}, folder / "b.exr");
+    EXPECT_EQ(files(), 5u);
+    EXPECT_EQ(read_ldr(folder / "a.png").pixels, picture.encoded);
+    EXPECT_EQ(read_hdr(folder / "b.exr").pixels, picture.radiance);
+    EXPECT_EQ(read_hdr(folder / "a.depth.exr").at(1, 0).x, 3);
+    EXPECT_EQ(read_hdr(folder / "a.cost_steps.exr").at(0, 0).x, 3);
+    const Image8 heat = read_ldr(folder / "a.cost_steps.png");
+    EXPECT_NE(heat.pixels[0], heat.pixels[1]);
+}
+
+}  // namespace
+}  // namespace peelray
