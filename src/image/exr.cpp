@@ -77,6 +77,8 @@ Selection select(const std::filesystem::path& path, const Imf::ChannelList& chan
         all += (all.empty() ? "" : ", ") + std::string(it.name());
     }
     const std::string alpha = has(channels, "A") ? "A" : "";
+    if (has(channels, "X") && has(channels, "Y") && has(channels, "Z") && !has(channels, "R"))
+        fail("cannot read {}: its channels ({}) are CIE X, Y, Z; save it with R, G, B", path.string(), all);
     if (colors.size() == 1) return {{colors[0], colors[0], colors[0], alpha}, false};
     if (has(channels, "R") && has(channels, "G") && has(channels, "B")) return {{"R", "G", "B", alpha}, false};
     if (has(channels, "Y") && has(channels, "RY") && has(channels, "BY")) return {{}, true};
@@ -121,6 +123,25 @@ Image read_channels(Imf::InputPart& part, const Imath::Box2i& window, const Sele
     return image;
 }
 
+/// What the display window shows of the data: pixels outside of the data are black, as transparent as the file can say.
+Image crop_to_display(const std::filesystem::path& path, const Imath::Box2i& data, const Imath::Box2i& display,
+                      Image from, bool has_alpha) {
+    if (data == display) return from;
+    check_size("read", path, int64_t(display.max.x) - display.min.x + 1, int64_t(display.max.y) - display.min.y + 1);
+    const int left = std::max(data.min.x, display.min.x), right = std::min(data.max.x, display.max.x),
+              top = std::max(data.min.y, display.min.y), bottom = std::min(data.max.y, display.max.y);
+    if (left > right || top > bottom)
+        fail("cannot read {}: its data lies outside of its display window; save it with the window of the data",
+             path.string());
+    Image out{uint32_t(display.max.x - display.min.x + 1), uint32_t(display.max.y - display.min.y + 1), {}};
+    out.pixels.assign(size_t(out.width) * out.height, glm::vec4(0, 0, 0, has_alpha ? 0 : 1));
+    for (int y = top; y <= bottom; ++y)
+        for (int x = left; x <= right; ++x)
+            out.at(uint32_t(x - display.min.x), uint32_t(y - display.min.y)) =
+                from.at(uint32_t(x - data.min.x), uint32_t(y - data.min.y));
+    return out;
+}
+
 Image decode(const std::filesystem::path& path, std::string_view bytes) {
     // A limit of the library, for the process: it guards what OpenEXR itself allocates while it reads headers.
     Imf::Header::setMaxImageSize(int(max_side), int(max_side));
@@ -132,11 +153,12 @@ Image decode(const std::filesystem::path& path, std::string_view bytes) {
         ++number;
     if (number == file.parts()) fail("cannot read {}: it holds deep data only; flatten it first", path.string());
     Imf::InputPart part(file, number);
+    const Imf::ChannelList& channels = part.header().channels();
     const Imath::Box2i window = part.header().dataWindow();
     check_size("read", path, int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1);
-    const Selection selection = select(path, part.header().channels());
+    const Selection selection = select(path, channels);
     for (const std::string& name : selection.names) {
-        const Imf::Channel* channel = name.empty() ? nullptr : part.header().channels().findChannel(name);
+        const Imf::Channel* channel = name.empty() ? nullptr : channels.findChannel(name);
         if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
             fail("cannot read {}: its channel {} is subsampled; save it at full resolution", path.string(), name);
     }
@@ -144,8 +166,10 @@ Image decode(const std::filesystem::path& path, std::string_view bytes) {
         fail("cannot read {}: luminance and chroma in a later part; save it with R, G, B", path.string());
     Image image{uint32_t(window.max.x - window.min.x + 1), uint32_t(window.max.y - window.min.y + 1), {}};
     image.pixels.assign(size_t(image.width) * image.height, glm::vec4(0, 0, 0, 1));
-    return selection.luminance_chroma ? read_luminance_chroma(bytes, window, std::move(image))
-                                      : read_channels(part, window, selection, std::move(image));
+    image = selection.luminance_chroma ? read_luminance_chroma(bytes, window, std::move(image))
+                                       : read_channels(part, window, selection, std::move(image));
+    const bool has_alpha = selection.luminance_chroma ? has(channels, "A") : !selection.names[3].empty();
+    return crop_to_display(path, window, part.header().displayWindow(), std::move(image), has_alpha);
 }
 
 /// One channel to write: `data` is float32 or half, `stride` bytes from pixel to pixel.

@@ -2,13 +2,18 @@
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
+#include <ImfDeepScanLineOutputPart.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfTiledOutputFile.h>
+
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstring>
@@ -43,10 +48,11 @@ void expect_close(const Image& a, const Image& b, float relative) {
     }
 }
 
-/// Writes float channels with any data window, scan lines or tiles.
-void write_exr(const std::filesystem::path& path, const Imath::Box2i& window, const std::vector<std::string>& names,
-               const std::vector<std::vector<float>>& channels, bool tiled, Imf::Compression compression) {
-    Imf::Header header(Imath::Box2i({0, 0}, {99, 99}), window);
+/// Writes float channels with any windows, scan lines or tiles.
+void write_exr(const std::filesystem::path& path, const Imath::Box2i& display, const Imath::Box2i& window,
+               const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels, bool tiled,
+               Imf::Compression compression) {
+    Imf::Header header(display, window);
     header.compression() = compression;
     Imf::FrameBuffer buffer;
     const size_t width = size_t(window.max.x - window.min.x + 1);
@@ -117,18 +123,96 @@ TEST_F(Hdr, ReadsExrWindowsTilesAndChannelNames) {
         for (const bool tiled : {false, true})
             for (const Imf::Compression compression :
                  {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::PIZ_COMPRESSION}) {
-                write_exr(folder / "rgb.exr", window, {"R", "G", "B", "Z"}, {a, b, c, a}, tiled, compression);
+                write_exr(folder / "rgb.exr", window, window, {"R", "G", "B", "Z"}, {a, b, c, a}, tiled, compression);
                 const Image rgb = read_hdr(folder / "rgb.exr");
                 ASSERT_EQ(rgb.width, 3u);
                 ASSERT_EQ(rgb.height, 2u);
                 EXPECT_EQ(rgb.at(1, 1), glm::vec4(5, 11, 17, 1));
-                write_exr(folder / "layer.exr", window, {"l.R", "l.G", "l.B", "l.A"}, {a, b, c, b}, tiled, compression);
+                write_exr(folder / "layer.exr", window, window, {"l.R", "l.G", "l.B", "l.A"}, {a, b, c, b}, tiled,
+                          compression);
                 EXPECT_EQ(read_hdr(folder / "layer.exr").at(2, 0), glm::vec4(3, 9, 15, 9));
-                write_exr(folder / "y.exr", window, {"Y", "A"}, {b, a}, tiled, compression);
+                write_exr(folder / "y.exr", window, window, {"Y", "A"}, {b, a}, tiled, compression);
                 EXPECT_EQ(read_hdr(folder / "y.exr").at(0, 1), glm::vec4(10, 10, 10, 4));
-                write_exr(folder / "z.exr", window, {"depth"}, {c}, tiled, compression);
+                write_exr(folder / "z.exr", window, window, {"depth"}, {c}, tiled, compression);
                 EXPECT_EQ(read_hdr(folder / "z.exr").at(2, 1), glm::vec4(18, 18, 18, 1));
             }
+}
+
+TEST_F(Hdr, ShowsTheDisplayWindowOfAnExr) {
+    const std::vector<float> a = {1, 2, 3, 4, 5, 6}, b = {7, 8, 9, 10, 11, 12}, c = {13, 14, 15, 16, 17, 18};
+    for (const bool tiled : {false, true}) {
+        // Three by two pixels at (1, 2) of a window of five by five that begins at (-1, 0).
+        write_exr(folder / "a.exr", {{-1, 0}, {3, 4}}, {{1, 2}, {3, 3}}, {"R", "G", "B"}, {a, b, c}, tiled,
+                  Imf::ZIP_COMPRESSION);
+        const Image pasted = read_hdr(folder / "a.exr");
+        ASSERT_EQ(pasted.width, 5u);
+        ASSERT_EQ(pasted.height, 5u);
+        for (uint32_t y = 0; y < 5; ++y)
+            for (uint32_t x = 0; x < 5; ++x) {
+                const bool is_inside = x >= 2 && (y == 2 || y == 3);
+                const size_t i = is_inside ? (y - 2) * 3 + x - 2 : 0;
+                EXPECT_EQ(pasted.at(x, y), is_inside ? glm::vec4(a[i], b[i], c[i], 1) : glm::vec4(0, 0, 0, 1));
+            }
+        // Only the last pixel is in a window of one by three.
+        write_exr(folder / "b.exr", {{-3, -6}, {-3, -4}}, {{-5, -7}, {-3, -6}}, {"R", "G", "B", "A"}, {a, b, c, a},
+                  tiled, Imf::PIZ_COMPRESSION);
+        const Image cut = read_hdr(folder / "b.exr");
+        ASSERT_EQ(cut.width, 1u);
+        ASSERT_EQ(cut.height, 3u);
+        EXPECT_EQ(cut.at(0, 0), glm::vec4(6, 12, 18, 6));
+        EXPECT_EQ(cut.at(0, 1), glm::vec4(0));
+        EXPECT_EQ(cut.at(0, 2), glm::vec4(0));
+        write_exr(folder / "c.exr", {{0, 0}, {9, 9}}, {{10, 0}, {12, 1}}, {"Y"}, {a}, tiled, Imf::ZIP_COMPRESSION);
+        expect_error([&] { read_hdr(folder / "c.exr"); }, "display window");
+        write_exr(folder / "d.exr", {{0, 0}, {99999, 99999}}, {{0, 0}, {2, 1}}, {"Y"}, {a}, tiled,
+                  Imf::ZIP_COMPRESSION);
+        expect_error([&] { read_hdr(folder / "d.exr"); }, "cannot read");
+    }
+}
+
+TEST_F(Hdr, ReadsHalvesIntegersAndLaterParts) {
+    const Imath::Box2i window({0, 0}, {1, 0});
+    const std::vector<Imath::half> red = {Imath::half(0.5f), Imath::half(2)};
+    const std::vector<unsigned> green = {3, 70000};
+    const std::vector<float> blue = {0.25f, 1e6f};
+    Imf::Header header(window, window);
+    header.channels().insert("R", Imf::Channel(Imf::HALF));
+    header.channels().insert("G", Imf::Channel(Imf::UINT));
+    header.channels().insert("B", Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer buffer;
+    buffer.insert("R", Imf::Slice::Make(Imf::HALF, red.data(), window, 2, 4));
+    buffer.insert("G", Imf::Slice::Make(Imf::UINT, green.data(), window, 4, 8));
+    buffer.insert("B", Imf::Slice::Make(Imf::FLOAT, blue.data(), window, 4, 8));
+    {
+        Imf::OutputFile file((folder / "mixed.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(1);
+    }
+    const std::vector<glm::vec4> expected = {{0.5f, 3, 0.25f, 1}, {2, 70000, 1e6f, 1}};
+    EXPECT_EQ(read_hdr(folder / "mixed.exr").pixels, expected);
+    {
+        Imf::Header first(window, window);
+        first.setName("deep");
+        first.setType(Imf::DEEPSCANLINE);
+        first.compression() = Imf::ZIPS_COMPRESSION;
+        first.channels().insert("R", Imf::Channel(Imf::FLOAT));
+        header.setName("flat");
+        header.setType(Imf::SCANLINEIMAGE);
+        const Imf::Header parts[] = {first, header};
+        Imf::MultiPartOutputFile file((folder / "parts.exr").c_str(), parts, 2);
+        unsigned counts[2] = {0, 0};
+        float* samples[2] = {nullptr, nullptr};
+        Imf::DeepFrameBuffer deep;
+        deep.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), 4, 8));
+        deep.insert("R", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples), sizeof(float*), 16, 4));
+        Imf::DeepScanLineOutputPart nothing(file, 0);
+        nothing.setFrameBuffer(deep);
+        nothing.writePixels(1);
+        Imf::OutputPart flat(file, 1);
+        flat.setFrameBuffer(buffer);
+        flat.writePixels(1);
+    }
+    EXPECT_EQ(read_hdr(folder / "parts.exr").pixels, expected);
 }
 
 TEST_F(Hdr, ReadsLuminanceAndChroma) {
@@ -151,8 +235,11 @@ TEST_F(Hdr, ReadsLuminanceAndChroma) {
 
 TEST_F(Hdr, RefusesDeepAndColourlessExrs) {
     const std::vector<float> a = {1, 2};
-    write_exr(folder / "a.exr", {{0, 0}, {1, 0}}, {"N.x", "N.y"}, {a, a}, false, Imf::ZIP_COMPRESSION);
+    const Imath::Box2i window({0, 0}, {1, 0});
+    write_exr(folder / "a.exr", window, window, {"N.x", "N.y"}, {a, a}, false, Imf::ZIP_COMPRESSION);
     expect_error([&] { read_hdr(folder / "a.exr"); }, "N.x, N.y");
+    write_exr(folder / "xyz.exr", window, window, {"X", "Y", "Z"}, {a, a, a}, false, Imf::ZIP_COMPRESSION);
+    expect_error([&] { read_hdr(folder / "xyz.exr"); }, "CIE X, Y, Z");
     Imf::Header header(1, 1);
     header.channels().insert("R", Imf::Channel(Imf::FLOAT));
     header.setType(Imf::DEEPSCANLINE);
@@ -227,17 +314,69 @@ TEST_F(Hdr, ReadsRadianceByHand) {
     const std::string head = "#?RGBE\n# a comment\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
     const auto pixel = [](int r, int g, int b, int e) { return std::string{char(r), char(g), char(b), char(e)}; };
     const Image flat = read_hdr(put("a.hdr", head + "-Y 1 +X 3\n" + pixel(128, 64, 0, 129) + pixel(1, 1, 1, 2)));
-    EXPECT_EQ(flat.pixels, std::vector<glm::vec4>(3, {1, 0.5f, 0, 1}));
+    EXPECT_EQ(flat.pixels, std::vector<glm::vec4>(3, {0.5f, 0.25f, 0, 1}));  // half of it: EXPOSURE
     std::string runs = pixel(2, 2, 0, 9);
     for (const int value : {128, 64, 32, 130}) runs += pixel(128 + 8, value, 1, value);
     const Image coded = read_hdr(put("a.hdr", head + "-Y 1 +X 9\r\n" + runs));
-    EXPECT_EQ(coded.pixels, std::vector<glm::vec4>(9, {2, 1, 0.5f, 1}));
+    EXPECT_EQ(coded.pixels, std::vector<glm::vec4>(9, {1, 0.5f, 0.25f, 1}));
     std::string zero_run = runs;
     zero_run[6] = 0;
     expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 9\n" + zero_run)); }, "illegal length");
     expect_error([&] { read_hdr(put("a.hdr", head + "-Y 1 +X 3\n" + pixel(1, 1, 1, 2))); }, "illegal length");
-    expect_error([&] { read_hdr(put("a.hdr", head + "+X 3 -Y 1\n")); }, "size line");
-    expect_error([&] { read_hdr(put("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n")); }, "xyze");
+    for (const char* size : {"+X 3 -X 1\n", "-Y 1\n", "-Y one +X 3\n", "Y 1 X 3\n", "-Z 1 +X 3\n"})
+        expect_error([&] { read_hdr(put("a.hdr", head + size)); }, "size line");
+    expect_error([&] { read_hdr(put("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_luv\n\n-Y 1 +X 1\n")); }, "luv");
+    for (const char* line : {"EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=nan\n", "EXPOSURE=\n", "COLORCORR=1 2\n"})
+        expect_error([&] { read_hdr(put("a.hdr", std::string("#?RADIANCE\n") + line + "\n-Y 1 +X 1\n\1\1\1\1")); },
+                     "factor");
+}
+
+TEST_F(Hdr, ReadsAllOrientationsOfRadiancePictures) {
+    // A picture of three by two whose red says which pixel it is; 9 by 8 has runs in rows and in columns.
+    for (const auto& [width, height] : {std::pair{3u, 2u}, {9u, 8u}})
+        for (int kind = 0; kind < 8; ++kind) {
+            const bool by_columns = kind & 1, mirrored = kind & 2, upside_down = kind & 4;
+            const std::string x = fmt::format("{}X {}", mirrored ? '-' : '+', width),
+                              y = fmt::format("{}Y {}", upside_down ? '+' : '-', height);
+            std::string bytes =
+                "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + (by_columns ? x + " " + y : y + " " + x) + "\n";
+            const uint32_t rows = by_columns ? width : height, length = by_columns ? height : width;
+            for (uint32_t row = 0; row < rows; ++row) {
+                std::string reds;
+                for (uint32_t i = 0; i < length; ++i) {
+                    const uint32_t fx = by_columns ? row : i, fy = by_columns ? i : row;
+                    const uint32_t px = mirrored ? width - 1 - fx : fx, py = upside_down ? height - 1 - fy : fy;
+                    reds += char(py * width + px + 1);
+                }
+                if (length < 8) {
+                    for (const char red : reds) bytes += std::string{red, 0, 0, char(136)};
+                } else {
+                    bytes += std::string{2, 2, 0, char(length), char(length)} + reds;
+                    for (const int value : {0, 0, 136}) bytes += std::string{char(128 + length), char(value)};
+                }
+            }
+            const Image image = read_hdr(put("a.hdr", bytes));
+            ASSERT_EQ(image.width, width) << kind;
+            ASSERT_EQ(image.height, height) << kind;
+            for (uint32_t i = 0; i < width * height; ++i) EXPECT_EQ(image.pixels[i].x, float(i + 1)) << kind;
+        }
+}
+
+TEST_F(Hdr, ReadsXyzAndDividesFactorsOut) {
+    // 0.9505, 1, 1.0890 is white; the mantissas are 121.7, 128, 139.4 of 128.
+    const std::string pixel{122, char(128), char(139), char(129)};
+    const Image white = read_hdr(put("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + pixel));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(white.pixels[0][c], 1, 0.02f) << c;
+    // A red of Rec. 709: 0.4124, 0.2126, 0.0193.
+    const std::string red{106, 54, 5, char(128)};
+    const Image pure = read_hdr(put("b.hdr", "#?RADIANCE\nFORMAT= 32-bit_rle_xyze\n\n-Y 1 +X 1\n" + red));
+    EXPECT_NEAR(pure.pixels[0].x, 1, 0.02f);
+    EXPECT_NEAR(pure.pixels[0].y, 0, 0.02f);
+    EXPECT_NEAR(pure.pixels[0].z, 0, 0.02f);
+    const std::string grey{char(128), char(128), char(128), char(131)};
+    const Image divided = read_hdr(
+        put("c.hdr", "#?RADIANCE\nEXPOSURE=2\nEXPOSURE= 0.5\nCOLORCORR= 1 2 4\nEXPOSURE=4\n\n-Y 1 +X 1\n" + grey));
+    EXPECT_EQ(divided.pixels[0], glm::vec4(1, 0.5f, 0.25f, 1));
 }
 
 TEST_F(Hdr, WritesFloatChannels) {
