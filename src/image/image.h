@@ -28,10 +28,10 @@ struct Image8 {
 /// Reads Radiance (.hdr) or OpenEXR (.exr) by its content: RGB(A), Y, luminance-chroma, one channel (grey) or one
 /// layer's R, G, B; of several parts the first flat one. An EXR's display window is the image: what its data window
 /// lacks of it is black, what stands over is cut. A Radiance file comes in any of the eight orientations and as RGB or
-/// CIE XYZ (with the white point D65: X, Y, Z of 0.95, 1, 1.09 make 1, 1, 1; Radiance's own tools write 179 times that);
-/// its EXPOSURE and COLORCORR factors are divided out. Every pixel comes out finite and ≥ 0: NaN and negative values
-/// become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error: missing, broken, not one of the
-/// two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all.
+/// CIE XYZ (with the white point D65: X, Y, Z of 0.95, 1, 1.09 make 1, 1, 1; Radiance's own tools write 179 times
+/// that); its EXPOSURE and COLORCORR factors are divided out. Every pixel comes out finite and ≥ 0: NaN and negative
+/// values become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error: missing, broken, not one
+/// of the two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all.
 Image read_hdr(const std::filesystem::path& path);
 
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.

@@ -114,4 +114,54 @@ fs::path resolve_inside(const fs::path& folder, const std::string& relative, con
     return target;
 }
 
+namespace {
+
+/// The entry of a folder by its name, exactly or else in another case; the first in alphabetic order of those.
+std::optional<fs::path> find_entry(const fs::path& folder, const std::string& name) {
+    std::error_code error;
+    if (fs::exists(folder / name, error)) return folder / name;
+    std::optional<fs::path> found;
+    const std::string wanted = lower_case(name);
+    for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+         entry.increment(error)) {
+        const fs::path file = entry->path();
+        if (lower_case(file.filename().string()) == wanted && (!found || file < *found)) found = file;
+    }
+    return found;
+}
+
+/// Inside the folder, symbolic links resolved; nothing for what is no regular file there.
+std::optional<fs::path> regular_inside(const fs::path& folder, const fs::path& relative) {
+    std::error_code error;
+    try {
+        const fs::path path = resolve_inside(folder, relative.string(), "file");
+        if (fs::is_regular_file(path, error)) return path;
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<SideFile> find_beside(const fs::path& folder, std::string_view name) {
+    std::string text(name);
+    std::replace(text.begin(), text.end(), '\\', '/');
+    if (text.empty() || text.find('\0') != std::string::npos) return std::nullopt;
+    if (const auto found = regular_inside(folder, text)) return SideFile{*found};
+    const fs::path root = folder.empty() ? fs::path(".") : folder;
+    fs::path relative;  // the name with the case that the files have
+    for (const fs::path& part : fs::path(text)) {
+        const bool plain = part != ".." && part != "/" && !part.empty();
+        const auto entry = plain ? find_entry(root / relative, part.string()) : std::nullopt;
+        relative = entry ? relative / entry->filename() : fs::path();
+        if (!entry) break;
+    }
+    if (!relative.empty())
+        if (const auto found = regular_inside(folder, relative)) return SideFile{*found};
+    const auto bare = find_entry(root, fs::path(text).filename().string());
+    if (!bare) return std::nullopt;
+    const auto found = regular_inside(folder, bare->filename());
+    return found ? std::optional(SideFile{*found, true}) : std::nullopt;
+}
+
 }  // namespace peelray

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,5 +29,16 @@ bool is_data_uri(std::string_view uri);
 /// http: or file:, and for whatever leads out of the folder once ".." and symbolic links are resolved.
 std::filesystem::path resolve_inside(const std::filesystem::path& folder, const std::string& relative,
                                      const std::string& where);
+
+/// A file that was looked for beside another one.
+struct SideFile {
+    std::filesystem::path path;
+    bool is_elsewhere = false;  ///< not where the name says, but under its bare file name in the folder itself
+};
+
+/// The file inside `folder` that a mesh or material file means by `name`, which another machine may have written: with
+/// backslashes, in another case, or with the absolute path that it had there, of which the bare name is looked for.
+/// Nothing: there is no such file, or it lies outside of the folder.
+std::optional<SideFile> find_beside(const std::filesystem::path& folder, std::string_view name);
 
 }  // namespace peelray

@@ -10,6 +10,7 @@
 #include "loaders/assimp_loader.h"
 #include "loaders/files.h"
 #include "loaders/gltf.h"
+#include "loaders/obj.h"
 
 namespace peelray {
 
@@ -18,8 +19,8 @@ namespace {
 Scene load_file(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
-    if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off")
-        return load_assimp(path, extension);
+    if (extension == ".obj") return load_obj(path);
+    if (extension == ".ply" || extension == ".stl" || extension == ".off") return load_assimp(path, extension);
     fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
          printable(path.string(), 1000), printable(extension, 20));
 }
