@@ -16,6 +16,16 @@ void GltfLoader::read_extensions() {
     std::sort(scene.extensions_unsupported.begin(), scene.extensions_unsupported.end());
 }
 
+/// A file may offer its triangles in an extension's compression only, although it does not say that it requires that.
+void GltfLoader::refuse_compressed() {
+    if (compressed > 0 && triangles == 0)
+        fail(
+            "{}: its triangles are compressed with KHR_draco_mesh_compression only, which is not supported; export the "
+            "scene without it",
+            scene.name);
+    if (compressed > 0) ignored["{} primitives dropped that KHR_draco_mesh_compression alone holds"] += compressed;
+}
+
 void GltfLoader::write_notes() {
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
 }
@@ -28,6 +38,7 @@ Scene load_gltf(const std::filesystem::path& path) {
     loader.read_nodes();
     loader.read_skins();
     loader.read_animations();
+    loader.refuse_compressed();
     loader.write_notes();
     loader.scene.files = loader.file.files();
     return std::move(loader.scene);

@@ -29,6 +29,7 @@ struct GltfLoader {
     Tally ignored;
     std::vector<UvSource> uv_sources;                            ///< per material
     std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
+    size_t compressed = 0;                                       ///< primitives whose positions only Draco's data holds
     uint64_t triangles = 0;                                      ///< in all primitives read so far
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
@@ -36,10 +37,13 @@ struct GltfLoader {
     void read_extensions();          // gltf.cpp
     void read_skins();               // gltf_animation.cpp
     void read_animations();          // gltf_animation.cpp
+    void refuse_compressed();        // gltf.cpp
     void write_notes();              // gltf.cpp
     void read_materials();           // gltf_material.cpp; adds the default material at the end
     void read_mesh(uint32_t index);  // gltf_mesh.cpp
-    void read_nodes();               // gltf_node.cpp; also reads the meshes, cameras and lights that they show
+    /// Of a mesh's first primitive, as the file says.
+    size_t target_count(uint32_t mesh) const;
+    void read_nodes();  // gltf_node.cpp; also reads the meshes, cameras and lights that they show
 };
 
 /// Reads a .gltf or .glb file.

@@ -35,6 +35,11 @@ std::vector<glm::mat4> inverse_bind_matrices(GltfLoader& loader, int accessor, s
             if (!std::isfinite(value)) fail("{}: the inverse bind matrix {} is not finite", where, i);
             out[i][k / 4][k % 4] = value;
         }
+    const auto is_invalid = [](const glm::mat4& m) { return m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1; };
+    if (const auto count = std::count_if(out.begin(), out.end(), is_invalid))
+        loader.ignored
+            ["{} inverse bind matrices whose last row is not 0, 0, 0, 1 used as they are "
+             "(ACCESSOR_INVALID_IBM)"] += size_t(count);
     return out;
 }
 
@@ -117,6 +122,23 @@ class AnimationReader {
         channel.times = loader_.file.floats(sampler.input);
         channel.values = loader_.file.floats(sampler.output);
         if (channel.times.empty()) fail("{}: the animation has no keys", where);
+        const size_t per_key = channel.width * (channel.interpolation == Interpolation::cubic ? 3 : 1);
+        if (!loader_.file.accessor(sampler.input).is_backed) keep_last_key(channel, per_key);
+        check_keys(channel, per_key, where);
+    }
+
+    /// Keys without times in the file are all at 0 seconds, where the last one holds.
+    void keep_last_key(AnimationChannel& channel, size_t per_key) {
+        if (channel.times.size() == 1 || channel.values.size() != channel.times.size() * per_key) return;
+        channel.times.resize(1);
+        channel.values.erase(channel.values.begin(), channel.values.end() - std::ptrdiff_t(per_key));
+        ++loader_.ignored["{} animation channels whose keys are all at 0 seconds: the last one counts"];
+    }
+
+    static void check_keys(const AnimationChannel& channel, size_t per_key, const std::string& where) {
+        if (channel.values.size() != channel.times.size() * per_key)
+            fail("{}: {} keys need {} numbers, the output has {}", where, channel.times.size(),
+                 channel.times.size() * per_key, channel.values.size());
         for (size_t i = 0; i < channel.times.size(); ++i) {
             if (!std::isfinite(channel.times[i]) || channel.times[i] < 0)
                 fail("{}: the time {} of key {} is no number of seconds from 0 up; repair the animation", where,
@@ -125,10 +147,6 @@ class AnimationReader {
                 fail("{}: the time {} of key {} is not after the one before; repair the animation", where,
                      channel.times[i], i);
         }
-        const size_t per_key = channel.width * (channel.interpolation == Interpolation::cubic ? 3 : 1);
-        if (channel.values.size() != channel.times.size() * per_key)
-            fail("{}: {} keys need {} numbers, the output has {}", where, channel.times.size(),
-                 channel.times.size() * per_key, channel.values.size());
         for (const float value : channel.values)
             if (!std::isfinite(value)) fail("{}: a value is not finite; repair the animation", where);
     }

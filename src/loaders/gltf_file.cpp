@@ -77,6 +77,9 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     } catch (const json::exception& error) {
         fail("{}: not a glTF file: {}", name_, printable(error.what(), 200));
     }
+    for (const json& node : checked["nodes"])
+        nodes_placed_twice_ += node.contains("matrix") &&
+                               (node.contains("translation") || node.contains("rotation") || node.contains("scale"));
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);
 }
@@ -120,7 +123,10 @@ void GltfFile::take_uris(json& checked, std::optional<size_t> glb_bytes) {
             source.uri = std::move(buffer["uri"].get_ref<std::string&>());
             buffer["uri"] = std::to_string(buffer_sources_.size());
         } else if (!buffer_sources_.empty() || !glb_bytes) {
-            fail("{}: the buffer has no data: no \"uri\" and no GLB chunk", at);
+            // Legal where nothing reads it, see view(); tinygltf insists on bytes.
+            source = {"", 1, false};
+            buffer["byteLength"] = 1;
+            buffer["uri"] = std::to_string(buffer_sources_.size());
         } else if (*glb_bytes < source.length) {
             fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", at, source.length, *glb_bytes);
         }
@@ -181,7 +187,8 @@ Bytes GltfFile::read_uri(const std::string& uri, const std::string& where) {
 
 /// Exactly byteLength bytes: a file may be longer, tinygltf insists.
 Bytes GltfFile::read_buffer(size_t index) {
-    const auto& [uri, length] = buffer_sources_.at(index);
+    const auto& [uri, length, has_data] = buffer_sources_.at(index);
+    if (!has_data) return Bytes(length);
     Bytes bytes = read_uri(uri, where("buffers", index) + ".uri");
     if (bytes.size() < length)
         fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", where("buffers", index), length,
@@ -192,7 +199,11 @@ Bytes GltfFile::read_buffer(size_t index) {
 
 std::span<const uint8_t> GltfFile::view(int index) const {
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(index)];
-    const std::span<const uint8_t> data = model_.buffers[static_cast<size_t>(view.buffer)].data;
+    const auto buffer = static_cast<size_t>(view.buffer);
+    if (!buffer_sources_[buffer].has_data)
+        fail("{}: the buffer has no data: no \"uri\" and no GLB chunk; export the scene uncompressed",
+             where("buffers", buffer));
+    const std::span<const uint8_t> data = model_.buffers[buffer].data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
         fail("{}: bytes {} to {} are outside of its buffer of {} bytes", where("bufferViews", size_t(index)),
              view.byteOffset, view.byteOffset + view.byteLength, data.size());
@@ -208,6 +219,7 @@ GltfFile::Accessor GltfFile::accessor(int index) const {
     out.components = static_cast<uint32_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(from.type)));
     out.component_type = static_cast<uint32_t>(from.componentType);
     out.normalized = from.normalized;
+    out.is_backed = size_t(from.bufferView) + 1 < model_.bufferViews.size() || from.sparse.isSparse;  // see check_gltf
     // tinygltf also knows signed integers and doubles, which the format does not.
     if (from.componentType > TINYGLTF_COMPONENT_TYPE_FLOAT || from.componentType == TINYGLTF_COMPONENT_TYPE_INT)
         fail("{}: the component type {} is unknown", out.where, from.componentType);

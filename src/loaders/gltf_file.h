@@ -30,6 +30,8 @@ class GltfFile {
     const std::vector<std::filesystem::path>& files() const { return files_; }
     /// All indices in it are in range, and vectors have the format's length or none at all.
     const tinygltf::Model& model() const { return model_; }
+    /// How many nodes have a matrix and a translation, rotation or scale as well, which tinygltf drops.
+    size_t nodes_placed_twice() const { return nodes_placed_twice_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
     std::string where(const char* list, size_t index) const { return fmt::format("{}.{}[{}]", name_, list, index); }
 
@@ -39,6 +41,7 @@ class GltfFile {
         uint32_t components = 0;      ///< 1 to 4 (SCALAR to VEC4), 4, 9, 16 for matrices
         uint32_t component_type = 0;  ///< 5120 to 5126
         bool normalized = false;      ///< integers that stand for [0, 1] or [-1, 1]
+        bool is_backed = false;       ///< false: no bytes behind it, all of it is zero
         bool is_float() const { return component_type == 5126; }
     };
     /// What an accessor says about itself; its data is not touched.
@@ -82,6 +85,7 @@ class GltfFile {
     struct BufferSource {
         std::string uri;
         size_t length;
+        bool has_data = true;  ///< false: neither a uri nor a GLB chunk, as the fallback of a compressed file may be
     };
     std::vector<BufferSource> buffer_sources_;
     struct ImageSource {
@@ -90,6 +94,7 @@ class GltfFile {
     };
     std::vector<ImageSource> image_sources_;
     std::vector<std::optional<Bytes>> loaded_images_;
+    size_t nodes_placed_twice_ = 0;
     uint64_t decoded_ = 0;  ///< components decoded so far, see spend()
 };
 

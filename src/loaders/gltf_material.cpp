@@ -137,7 +137,7 @@ class MaterialReader {
         uv_.offset = vector(transform, "offset", uv_.offset);
         uv_.scale = vector(transform, "scale", uv_.scale);
         uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
-        const std::optional<int> image = image_of(info.index);
+        const std::optional<int> image = image_if_there(info.index, true);
         uv_.used = image.has_value();
         if (image) material_.base_color_texture = texture_id(*image, info.index);
     }
@@ -146,7 +146,8 @@ class MaterialReader {
     void ignore(int texture, const char* sentence) {
         if (texture < 0) return;
         ++loader_.ignored[sentence];
-        if (const auto image = image_if_there(texture)) check_image(loader_.file.image_bytes(*image), where(*image));
+        if (const auto image = image_if_there(texture, false))
+            check_image(loader_.file.image_bytes(*image), where(*image));
     }
 
     /// The image that a texture shows; none (with a note) where only an extension's format is offered.
@@ -157,11 +158,26 @@ class MaterialReader {
         return std::nullopt;
     }
 
-    /// The same for a texture whose texels the picture does not show: a file that is not there is no reason to give up.
-    std::optional<int> image_if_there(int texture) {
+    /// The same, and none (with a note) where the image cannot be had: a material has its factors, so that is no reason
+    /// to give up.
+    std::optional<int> image_if_there(int texture, bool is_base_color) {
         const std::optional<int> image = image_of(texture);
-        if (!image || !loader_.file.is_image_missing(*image)) return image;
-        ++loader_.ignored["{} textures other than of the base colour left out, their image files are missing"];
+        if (!image) return image;
+        if (loader_.file.is_image_missing(*image)) {
+            std::string file = printable(loader_.file.image_file(*image), 80);
+            std::erase_if(file, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
+            ++loader_
+                  .ignored[is_base_color
+                               ? fmt::format("{{}} base colour textures left out, the image file {} is missing: the "
+                                             "factors are used",
+                                             file)
+                               : "{} textures other than of the base colour left out, their image files are missing"];
+            return std::nullopt;
+        }
+        const char* type = foreign_image_type(loader_.file.image_bytes(*image));
+        if (!type) return image;
+        ++loader_.ignored[fmt::format(
+            "{{}} textures left out, their images are of the type {}, which is not read: the factors are used", type)];
         return std::nullopt;
     }
 
@@ -193,7 +209,7 @@ class MaterialReader {
     }
 
     std::optional<glm::vec4> mean_of(int texture, bool srgb) {
-        const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture);
+        const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture, false);
         if (!image) return std::nullopt;
         return mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
     }

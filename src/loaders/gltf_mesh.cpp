@@ -25,6 +25,10 @@ class PrimitiveReader {
             ++loader_.ignored["{} primitives without positions dropped"];
             return false;
         }
+        if (is_compressed()) {
+            ++loader_.compressed;
+            return false;
+        }
         out.material =
             static_cast<uint32_t>(from_.material >= 0 ? size_t(from_.material) : loader_.scene.materials.size() - 1);
         out.positions = vectors<glm::vec3>("POSITION");
@@ -35,6 +39,13 @@ class PrimitiveReader {
     }
 
   private:
+    /// Positions that the file leaves to Draco's data; zeros that morph targets move are something else.
+    bool is_compressed() const {
+        const std::vector<std::string>& used = loader_.file.model().extensionsUsed;
+        return from_.targets.empty() && !loader_.file.accessor(from_.attributes.at("POSITION")).is_backed &&
+               std::find(used.begin(), used.end(), "KHR_draco_mesh_compression") != used.end();
+    }
+
     bool has(const char* name) const { return from_.attributes.count(name) > 0; }
 
     template <typename Vector>
@@ -77,6 +88,12 @@ class PrimitiveReader {
                 if (corners[i] >= out.positions.size())
                     fail("{}: index {} is {}, the primitive has {} vertices", where_, i, corners[i],
                          out.positions.size());
+            const uint32_t type = loader_.file.accessor(from_.indices).component_type;
+            const uint32_t restart = type == 5121 ? UINT8_MAX : type == 5123 ? UINT16_MAX : UINT32_MAX;
+            if (std::find(corners.begin(), corners.end(), restart) != corners.end())
+                ++loader_.ignored
+                      ["{} primitives whose largest index would restart them drawn with that vertex "
+                       "(ACCESSOR_INDEX_PRIMITIVE_RESTART)"];
         } else {
             corners.resize(out.positions.size());
             for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<uint32_t>(i);
@@ -219,11 +236,23 @@ class PrimitiveReader {
 
 }  // namespace
 
+size_t GltfLoader::target_count(uint32_t mesh) const {
+    const std::vector<tinygltf::Primitive>& primitives = file.model().meshes[mesh].primitives;
+    return primitives.empty() ? 0 : primitives[0].targets.size();
+}
+
 void GltfLoader::read_mesh(uint32_t index) {
     const std::vector<tinygltf::Primitive>& primitives = file.model().meshes[index].primitives;
     Mesh& mesh = scene.meshes[index];
     mesh.name = file.model().meshes[index].name;
     mesh.weights.assign(file.model().meshes[index].weights.begin(), file.model().meshes[index].weights.end());
+    const size_t targets = target_count(index);
+    if (std::any_of(primitives.begin(), primitives.end(), [&](const auto& p) { return p.targets.size() != targets; }))
+        ++ignored
+            ["{} meshes whose primitives have unequal numbers of morph targets "
+             "(MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT)"];
+    if (!mesh.weights.empty() && mesh.weights.size() != targets)
+        ++ignored["{} meshes with another number of weights than of morph targets (MESH_INVALID_WEIGHTS_COUNT)"];
     for (size_t i = 0; i < primitives.size(); ++i) {
         const std::string where = fmt::format("{}.primitives[{}]", file.where("meshes", index), i);
         Primitive out;

@@ -40,6 +40,17 @@ Placement placement_of(const tinygltf::Node& from) {
     return out;
 }
 
+/// Whether the columns are at right angles and the last row is that of a placement.
+bool is_placement(const glm::mat4& m) {
+    if (m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1) return false;
+    for (int a = 0; a < 3; ++a)
+        for (int b = a + 1; b < 3; ++b) {
+            const glm::dvec3 u(m[a]), v(m[b]);
+            if (std::abs(glm::dot(u, v)) > 0.01 * glm::length(u) * glm::length(v)) return false;
+        }
+    return true;
+}
+
 class NodeReader {
   public:
     explicit NodeReader(GltfLoader& loader)
@@ -63,6 +74,9 @@ class NodeReader {
             push(model_.nodes[i].children, add_node(i, parent));
         }
         aim_cameras();
+        if (const size_t count = loader_.file.nodes_placed_twice())
+            loader_.ignored["{} nodes with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
+                count;
     }
 
   private:
@@ -88,11 +102,16 @@ class NodeReader {
         node.local = node.rest.matrix();
         for (int i = 0; i < 16 && node.fixed; ++i)
             node.local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
+        note_transform(from, node.local);
         node.skin = from.skin;
         node.weights.assign(from.weights.begin(), from.weights.end());
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
         check_finite(world, loader_.file.where("nodes", index));
         if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
+        if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
+            ++loader_.ignored
+                  ["{} nodes with another number of weights than their mesh has morph targets "
+                   "(NODE_WEIGHTS_INVALID)"];
         if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
         if (const auto light = from.extensions.find("KHR_lights_punctual");
             light != from.extensions.end() && light->second.Has("light"))
@@ -103,6 +122,22 @@ class NodeReader {
         const int added = static_cast<int>(worlds_.size()) - 1;
         if (!instances.empty()) add_instances(added, instances);
         return added;
+    }
+
+    /// What is invalid, but drawn; with the code that Khronos's validator has for it.
+    void note_transform(const tinygltf::Node& from, const glm::mat4& local) {
+        Tally& ignored = loader_.ignored;
+        if (from.rotation.size() == 4) {
+            const double length = std::hypot(std::hypot(from.rotation[0], from.rotation[1]),
+                                             std::hypot(from.rotation[2], from.rotation[3]));
+            if (std::abs(length - 1) > 0.005)
+                ++ignored["{} node rotations that are not of unit length scaled to it (ROTATION_NON_UNIT)"];
+        }
+        if (from.matrix.empty()) return;
+        if (!is_placement(local))
+            ++ignored
+                ["{} node matrices that no translation, rotation and scale make used as they are "
+                 "(NODE_MATRIX_NON_TRS)"];
     }
 
     /// EXT_mesh_gpu_instancing: transforms inside of the node; none: the mesh is shown once.

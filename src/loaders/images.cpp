@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -70,6 +71,21 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
     texture.texels.resize(size_t(texture.width) * texture.height);
     std::memcpy(texture.texels.data(), pixels.get(), texture.texels.size() * 4);
     return texture;
+}
+
+const char* foreign_image_type(std::span<const uint8_t> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string_view second = text.size() < 12 ? "" : text.substr(4, 4), third = text.substr(0, 12);
+    if (text.starts_with("\xABKTX 20")) return "KTX2";
+    if (text.starts_with("\xABKTX 11")) return "KTX";
+    if (text.starts_with("RIFF") && third.ends_with("WEBP")) return "WebP";
+    if (second == "ftyp") return third.substr(8).starts_with("avi") ? "AVIF" : "HEIF";
+    if (text.starts_with("DDS ")) return "DDS";
+    if (text.starts_with("sB")) return "Basis";
+    if (text.starts_with(std::string_view("II*\0", 4)) || text.starts_with(std::string_view("MM\0*", 4))) return "TIFF";
+    if (text.starts_with("\x76\x2f\x31\x01")) return "OpenEXR";
+    if (text.starts_with("#?")) return "Radiance";
+    return text.starts_with("<svg") || text.starts_with("<?xml") ? "SVG" : nullptr;
 }
 
 glm::vec4 mean_texel(const Texture& texture, bool srgb) {

@@ -16,6 +16,10 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where);
 /// Checks that the bytes begin like an image that decode_image reads, without decoding the pixels.
 void check_image(std::span<const uint8_t> bytes, const std::string& where);
 
+/// The type of an image that decode_image does not read, such as "KTX2" or "WebP", by its first bytes; nullptr: none
+/// that is known.
+const char* foreign_image_type(std::span<const uint8_t> bytes);
+
 /// The mean of all texels, channels in [0, 1] as stored (`linear`) or with red, green, blue decoded from sRGB.
 glm::vec4 mean_texel(const Texture& texture, bool srgb);
 

@@ -72,6 +72,21 @@ TEST(GltfAnimation, KeyTimes) {
     EXPECT_MENTIONS(error_of(folder, gltf), "key times must be single floats");
 }
 
+TEST(GltfAnimation, KeysWithoutTimesAreAllAtZero) {
+    const TempFolder folder;
+    json gltf = skinned();
+    animate_node(gltf, 2, "translation", {0, 1, 2}, {0, 1, 0, 0, 2, 0, 0, 3, 0}, "VEC3");
+    const size_t input = gltf["animations"][0]["samplers"][0]["input"];
+    gltf["accessors"][input].erase("bufferView");
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.animations.at(0).channels.size(), 1u);
+    EXPECT_EQ(scene.animations[0].channels[0].at(0.5f), (std::vector<float>{0, 3, 0}));
+    EXPECT_EQ(scene.animations[0].duration, 0);
+    EXPECT_TRUE(has_note(scene, "all at 0 seconds"));
+    gltf["accessors"][input]["count"] = 2;
+    EXPECT_MENTIONS(error_of(folder, gltf), "2 keys need 6 numbers");
+}
+
 TEST(GltfAnimation, CountsAndTypesOfValues) {
     const TempFolder folder;
     const auto with = [&](const char* path, std::vector<float> values, const char* type, const char* interpolation) {

@@ -273,7 +273,10 @@ json textured(const std::string& uri) {
 
 TEST(GltfBad, Images) {
     const TempFolder folder;
-    EXPECT_MENTIONS(error_of(folder, textured("gone.png")), "gone.png: no such file");
+    const Scene gone = load(folder, textured("gone.png"));  // the factor is used, and one note says so
+    EXPECT_EQ(gone.materials.at(0).base_color_texture, -1);
+    ASSERT_EQ(gone.notes.size(), 1u);
+    EXPECT_MENTIONS(gone.notes[0], "gone.png is missing");
     folder.write("text.png", "this is no image");
     EXPECT_MENTIONS(error_of(folder, textured("text.png")), "images[0] (text.png)");
     folder.write("empty.png", "");

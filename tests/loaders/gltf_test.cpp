@@ -178,6 +178,83 @@ TEST(Gltf, MissingImagesWithoutTexelsInThePictureAreNoted) {
     EXPECT_FALSE(has_note(scene, "replaced by their mean"));
 }
 
+TEST(Gltf, ImagesOfOtherTypesAreNoted) {
+    const TempFolder folder;
+    const std::pair<const char*, std::string> images[] = {{"KTX2", "\xABKTX 20\xBB\r\n\x1A\n"},
+                                                          {"WebP", std::string("RIFF\0\0\0\0WEBPVP8 ", 16)},
+                                                          {"AVIF", std::string("\0\0\0\x1C"
+                                                                               "ftypavif",
+                                                                               12)},
+                                                          {"DDS", "DDS |"}};
+    for (const auto& [type, bytes] : images)
+        for (const char* material : {R"([{"normalTexture": {"index": 0}}])",
+                                     R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])",
+                                     R"([{"emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1]}])"}) {
+            json gltf = square();
+            gltf["images"] = {{{"uri", data_uri(bytes)}}};
+            gltf["textures"] = {{{"source", 0}}};
+            gltf["materials"] = json::parse(material);
+            const Scene scene = load(folder, gltf);
+            EXPECT_EQ(scene.materials[0].base_color_texture, -1);
+            EXPECT_TRUE(has_note(scene, std::string("of the type ") + type)) << type << material;
+        }
+}
+
+TEST(Gltf, BuffersThatNothingReadsNeedNoData) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["buffers"].push_back({{"byteLength", 4000000000u}});
+    gltf["bufferViews"].push_back({{"buffer", gltf["buffers"].size() - 1}, {"byteLength", 100}});
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);
+    gltf["accessors"][0]["bufferView"] = gltf["bufferViews"].size() - 1;
+    EXPECT_MENTIONS(error_of(folder, gltf), "no data");
+}
+
+TEST(Gltf, TrianglesThatOnlyDracoHolds) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    primitive(gltf)["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0},
+                                                                   {"attributes", {{"POSITION", 0}}}};
+    EXPECT_EQ(first_primitive(load(folder, gltf)).triangles.size(), 2u);  // with a copy that is not compressed
+    gltf["accessors"][0].erase("bufferView");
+    EXPECT_MENTIONS(error_of(folder, gltf), "KHR_draco_mesh_compression only");
+}
+
+TEST(Gltf, InvalidFilesThatAreDrawnSaySo) {
+    const TempFolder folder;
+    const auto note = [&](const json& gltf, const char* code) {
+        EXPECT_TRUE(has_note(load(folder, gltf), code)) << code;
+    };
+    json gltf = square();
+    EXPECT_TRUE(load(folder, gltf).notes.empty());
+    gltf["nodes"][0]["rotation"] = {0, 0, 0, 2};
+    note(gltf, "ROTATION_NON_UNIT");
+    gltf["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    note(gltf, "NODE_MATRIX_TRS");
+    gltf["nodes"][0].erase("rotation");
+    EXPECT_TRUE(load(folder, gltf).notes.empty());
+    gltf["nodes"][0]["matrix"][4] = 1;  // a shear
+    note(gltf, "NODE_MATRIX_NON_TRS");
+    gltf["nodes"][0].erase("matrix");
+    gltf["nodes"][0]["weights"] = {1};
+    note(gltf, "NODE_WEIGHTS_INVALID");
+    gltf["nodes"][0].erase("weights");
+    gltf["meshes"][0]["weights"] = {0.5};
+    note(gltf, "MESH_INVALID_WEIGHTS_COUNT");
+    primitive(gltf)["targets"] = json::array({{{"POSITION", 0}}});
+    EXPECT_TRUE(load(folder, gltf).notes.empty());
+    gltf["meshes"][0]["primitives"].push_back(primitive(gltf));
+    gltf["meshes"][0]["primitives"][1].erase("targets");
+    note(gltf, "MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT");
+    json restart = square();
+    std::vector<float> line;
+    for (int i = 0; i < 256; ++i) line.insert(line.end(), {float(i), float(i % 3), 0});
+    primitive(restart)["attributes"]["POSITION"] = add_accessor(restart, pack(line), 5126, "VEC3", 256);
+    primitive(restart)["indices"] = add_accessor(restart, pack<uint8_t>({0, 1, 255}), 5121, "SCALAR", 3);
+    note(restart, "ACCESSOR_INDEX_PRIMITIVE_RESTART");
+}
+
 TEST(Gltf, HierarchyIsDepthFirstAndTransforms) {
     const TempFolder folder;
     json gltf = square();
