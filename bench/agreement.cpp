@@ -80,7 +80,7 @@ class Bench {
           commands_(device),
           scene_(device, scene, at_rest(scene), assemble(scene, at_rest(scene), motion_of(scene, "")),
                  choice_of(ldc, test)) {
-        for (const LdcBody& body : scene_.download_bodies(commands_)) voxel_ = std::max(voxel_, body.grid.voxel);
+        for (const LdcBody& body : scene_.stats(commands_).bodies) voxel_ = std::max(voxel_, body.grid.voxel);
     }
 
     Tally run(RayKind kind, uint64_t count, uint32_t seed, const std::function<void(uint64_t)>& progress) {

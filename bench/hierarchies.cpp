@@ -80,8 +80,8 @@ Json measure(Device& device, const std::string& name, const Options& options) {
             RayScene cubes(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), choice);
             size_t found = 0;
             const double ms = trace_on_gpu(device, cubes, rays, options.repeat, found);
-            row[name_of(traversal)] = {{"build_ms", cubes.build_ms()}, {"mrays_per_second", rate(ms)}, {"hits", found}};
-            fmt::print(", {} {:.0f} (build {:.2f} ms)", name_of(traversal), rate(ms), cubes.build_ms());
+            row[name_of(traversal)] = {{"build_ms", cubes.build().ms}, {"mrays_per_second", rate(ms)}, {"hits", found}};
+            fmt::print(", {} {:.0f} (build {:.2f} ms)", name_of(traversal), rate(ms), cubes.build().ms);
         }
         fmt::print("\n");
         std::fflush(stdout);

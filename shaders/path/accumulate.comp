@@ -17,13 +17,7 @@ BUFFER(writeonly, 7, uint, encoded)
 #include "view/camera.glsl"
 #include "path/gather.glsl"
 #include "path/shading.glsl"
-
-uint encode(vec3 radiance) {
-    vec3 color = radiance * params.scale;
-    if (params.curve == 1u) color = tonemapAces(color);
-    if (params.curve == 2u) color = tonemapNeutral(color);
-    return packUnorm4x8(vec4(linearToSrgb(clamp(color, vec3(0), vec3(1))), 1));
-}
+#include "path/encode.glsl"
 
 void main() {
     const uint i = GLOBAL_INDEX;
@@ -38,5 +32,5 @@ void main() {
     vec4 sum = vec4(finite ? radiance : vec3(0), (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
-    if (params.last != 0u) encoded[at] = encode(sum.rgb);
+    if (params.last != 0u) encoded[at] = encode(sum.rgb, params.scale, params.curve);
 }

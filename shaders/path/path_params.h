@@ -85,6 +85,13 @@ struct AccumulateParams {
 };
 SHARED_SIZE(AccumulateParams, 32);
 
+struct EncodeParams {
+    uint pixels;
+    float scale;  ///< exposure / samples
+    uint curve;   ///< 0 none, 1 ACES, 2 neutral
+};
+SHARED_SIZE(EncodeParams, 12);
+
 /// Parameters of the ray_setup passes: the box of the scene.
 struct RaySetupParams {
     vec3 lower;

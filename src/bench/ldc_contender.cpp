@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/tracers/ldc_tracer.h"
 #include "render/transforms.h"
 
 namespace peelray {
@@ -18,8 +19,10 @@ TracerChoice rebuilt(const CubeChoice& cubes) {
 
 LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene, const Moment& moment,
                            const Assembly& assembly, CubeChoice choice)
-    : GpuContender(device, probe), scene_(device, scene, moment, assembly, rebuilt(choice)) {
-    const std::vector<LdcBody> bodies = scene_.download_bodies(commands_);
+    : GpuContender(device, probe),
+      scene_(device, scene, moment, assembly, rebuilt(choice)),
+      cubes_(dynamic_cast<const LdcTracer&>(scene_.tracer()).cubes()) {
+    const std::vector<LdcBody> bodies = scene_.stats(commands_).bodies;
     const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, moment.worlds);
     if (choice.hit != HitTest::exact) voxels_.resize(assembly.shown);
     for (size_t i = 0; i < assembly.instances.size(); i++) {
@@ -36,7 +39,7 @@ LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene
 }
 
 Claim LdcContender::claim() const {
-    return scene_.cubes().choice().hit == HitTest::exact ? Claim::exact : Claim::voxel;
+    return cubes_.choice().hit == HitTest::exact ? Claim::exact : Claim::voxel;
 }
 
 float LdcContender::start_offset(uint32_t triangle) const {
@@ -44,7 +47,7 @@ float LdcContender::start_offset(uint32_t triangle) const {
 }
 
 MemoryUse LdcContender::memory() const {
-    const Cubes& cubes = scene_.cubes().cubes();
+    const Cubes& cubes = cubes_.cubes();
     MemoryUse use;
     const auto add = [&](const char* name, const Buffer& buffer) {
         if (buffer) use.emplace_back(name, buffer.bytes());

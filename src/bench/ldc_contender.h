@@ -18,7 +18,7 @@ class LdcContender : public GpuContender {
     double voxel() const override { return voxel_; }
     MemoryUse memory() const override;
 
-    SceneCubes::Stats stats() const { return scene_.cubes().stats(); }
+    SceneCubes::Stats stats() const { return cubes_.stats(); }
 
   protected:
     void record_build(Commands& commands) override { scene_.record_build(commands); }
@@ -32,6 +32,7 @@ class LdcContender : public GpuContender {
 
   private:
     RayScene scene_;
+    const SceneCubes& cubes_;    ///< of the scene's tracer
     std::vector<float> voxels_;  ///< of the cube of each triangle (file order), world units; only of planar hits
     float voxel_ = 0;            ///< the largest
 };

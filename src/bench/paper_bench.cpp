@@ -69,7 +69,7 @@ void summarise(const std::vector<MadePicture>& pictures, PaperRow& row) {
             b.push_back(time.frame_ms - time.build_ms);
             frame.push_back(time.frame_ms);
         }
-        for (const RenderStats::Time& pass : picture.stats.render.passes) {
+        for (const PassTime& pass : picture.stats.render.passes) {
             auto found =
                 std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == pass.name; });
             if (found == passes.end()) found = passes.insert(passes.end(), {pass.name, {}});

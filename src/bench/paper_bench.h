@@ -19,13 +19,13 @@ struct PaperRow {
     Traversal traversal = Traversal::voxel;
     HitTest hit = HitTest::exact;
     uint32_t ldc = 0;
-    double tolerance = 0;            ///< world units
-    std::optional<uint32_t> layers;  ///< samples of the fullest pixel; none: the cube has no such order
-    uint32_t object_pixels = 0;      ///< along the longest side of what stands on the floor, in its LDIs; 0: unknown
-    std::string left_out;            ///< why, as Error::text(); empty: it was measured
-    Timing a, b, frame;              ///< the cubes; all else; both
-    std::vector<RenderStats::Time> passes;  ///< medians
-    std::optional<PictureStats> stats;      ///< of the last frame
+    double tolerance = 0;               ///< world units
+    std::optional<uint32_t> layers;     ///< samples of the fullest pixel; none: the cube has no such order
+    uint32_t object_pixels = 0;         ///< along the longest side of what stands on the floor, in its LDIs; 0: unknown
+    std::string left_out;               ///< why, as Error::text(); empty: it was measured
+    Timing a, b, frame;                 ///< the cubes; all else; both
+    std::vector<PassTime> passes;       ///< medians
+    std::optional<PictureStats> stats;  ///< of the last frame
 };
 
 class PaperBench {

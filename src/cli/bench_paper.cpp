@@ -39,7 +39,7 @@ static Json row_json(const PaperRow& row) {
         {"b_ms", if_measured(spread_json(row.b))},
         {"frame_ms", if_measured(spread_json(row.frame))}};
     Json passes = Json::array();
-    for (const RenderStats::Time& pass : row.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
+    for (const PassTime& pass : row.passes) passes.push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["passes"] = if_measured(passes);
     json["rays"] = row.stats ? rays_json(row.stats->rays) : Json(nullptr);
     json["ldc"] = row.stats ? cubes_json(*row.stats) : Json(nullptr);

@@ -178,7 +178,7 @@ Json memory_bytes_json(const RenderStats& s) {
 
 static Json rates_json(const PictureStats& stats) {
     double trace_ms = 0, shadow_ms = 0;
-    for (const RenderStats::Time& pass : stats.render.passes) {
+    for (const PassTime& pass : stats.render.passes) {
         if (pass.name.starts_with("trace_shadow"))
             shadow_ms = pass.ms;
         else if (pass.name.starts_with("trace"))
@@ -219,7 +219,7 @@ Json picture_json(const PictureStats& stats) {
     json["timed"] = s.timed;
     json["frame_ms"] = s.frame_ms;
     json["build_ms"] = s.build_ms;
-    for (const RenderStats::Time& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
+    for (const PassTime& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["rays"] = rays_json(stats.rays);
     if (stats.by_reference())
         json["hit"] = "double";

@@ -77,27 +77,26 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
     return result;
 }
 
-TraceStats trace_stats(Device& device, const Geometry& geometry, const RayScene& scene, const Traced& traced,
-                       bool any_hit) {
+TraceStats trace_stats(Device& device, const Geometry& geometry, const TracerChoice& choice,
+                       const TracerStats& traced_in, const FrameMeter& build, const Traced& traced, bool any_hit) {
     TraceStats stats;
     stats.machine = machine_of(device);
     stats.triangles = geometry.triangles.size();
     stats.rays = traced.hits.size();
     stats.hits = traced.found;
     stats.any_hit = any_hit;
-    stats.build_ms = scene.build_ms();
-    stats.build_passes = scene.build_times();
+    stats.build_ms = build.ms;
+    stats.build_passes = build.passes.rows();
     stats.trace_ms = traced.trace_ms;
     if (traced.counted) stats.costs = traced.sums;
-    stats.choice = scene.cubes().choice();
-    if (scene.structures()) {
-        stats.structures = scene.structures()->stats();
+    stats.choice = choice.cubes;
+    if (choice.tracer == Tracer::khr) {
+        stats.structures = traced_in.structures;
         return stats;
     }
-    Commands commands(device);
-    stats.cubes = scene.cubes().stats();
-    stats.bodies = scene.download_bodies(commands);
-    stats.shown = scene.shown();
+    stats.cubes = traced_in.cubes;
+    stats.bodies = traced_in.bodies;
+    stats.shown = traced_in.shown;
     stats.box = {geometry.lower, geometry.upper};
     stats.memory = device.allocations();
     stats.peak_memory = device.peak_allocations();
@@ -135,23 +134,26 @@ void run_trace(const TraceArguments& a) {
     const Traced traced = trace_rays(device, traced_scene, rays, a);
     device.check_validation();
     Commands commands(device);
-    if (!traced_scene.structures()) {
-        const std::string note = tolerance_note(traced_scene.download_bodies(commands), settings.cubes);
+    const TracerStats traced_in = traced_scene.stats(commands);
+    const bool by_khr = settings.tracer == Tracer::khr;
+    if (!by_khr) {
+        const std::string note = tolerance_note(traced_in.bodies, settings.cubes);
         if (!note.empty()) print_note(note);
     }
     write_hits(a.hits, traced.hits);
     if (!a.counters.empty()) write_costs(a.counters, traced.costs);
     if (!a.stats.empty())
-        write_json(a.stats, trace_json(trace_stats(device, geometry, traced_scene, traced, a.any_hit)));
+        write_json(a.stats, trace_json(trace_stats(device, geometry, settings, traced_in, traced_scene.build(), traced,
+                                                   a.any_hit)));
 
     fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
-    if (traced_scene.structures())
-        fmt::print(", {} acceleration structures", traced_scene.structures()->stats().bodies);
+    if (by_khr)
+        fmt::print(", {} acceleration structures", traced_in.structures.bodies);
     else
-        fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_scene.cubes().stats()));
+        fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_in.cubes));
     if (device.timestamp_period() > 0)
-        fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", traced_scene.structures() ? "structures" : "cubes",
-                   traced_scene.build_ms(), traced.trace_ms);
+        fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", by_khr ? "structures" : "cubes",
+                   traced_scene.build().ms, traced.trace_ms);
     fmt::print("; {}\n", device.info().name);
 }
 

@@ -8,6 +8,7 @@
 
 #include "gpu/acceleration_structure.h"
 #include "ldc/instances.h"
+#include "ldc/triangle_buffers.h"
 
 namespace peelray {
 

@@ -25,7 +25,7 @@ void AbufferRasterizer::record(Commands& commands, const BuildState& state, cons
     const LdcParams& p = state.params;
     const DrawRange range{0, p.triangles * (routed_.vertices / 3), 0, routed_.instances};
     const Binding bindings[] = {{"positions", triangles.positions}, {"triangles", triangles.triangles},
-                                {"counters", state.counters},       {"bodies", state.cubes.body_table},
+                                {"counters", state.counters},       {"bodies", state.cubes.table.entries},
                                 {"node_masks", state.node_masks},   {"fragments", state.fragments}};
     DrawTargets targets;
     targets.width = targets.height = side_;

@@ -1,6 +1,6 @@
 #include "ldc/base_color.h"
 
-#include "ldc/cubes.h"
+#include "ldc/triangle_buffers.h"
 
 namespace peelray {
 

@@ -27,7 +27,7 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"counters", state.counters},
                                 {"node_masks", state.node_masks},
                                 {"fragments", state.fragments},
-                                {"bodies", state.cubes.body_table},
+                                {"bodies", state.cubes.table.entries},
                                 {"blocks", blocks_},
                                 Binding::if_used("corners", corners ? &state.cubes.corners : nullptr)};
     const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);

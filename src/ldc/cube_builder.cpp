@@ -105,9 +105,9 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
     rasterizer_->clear(commands, *state_);
     order_->clear(commands, *state_);
     commands.run(state_->device.pass("ldc_grids"),
-                 {{"body_lower", cubes_.body_lower},
-                  {"body_upper", cubes_.body_upper},
-                  {"bodies", cubes_.body_table},
+                 {{"body_lower", cubes_.table.lower},
+                  {"body_upper", cubes_.table.upper},
+                  {"bodies", cubes_.table.entries},
                   {"counters", state_->counters}},
                  state_->params, {1});
     rasterizer_->record(commands, *state_, triangles);

@@ -9,40 +9,15 @@
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
 #include "ldc/base_color.h"
+#include "ldc/body_table.h"
 #include "ldc/ldc_params.h"
+#include "ldc/triangle_buffers.h"
 #include "settings/choices.h"
 
 namespace peelray {
 
-/// Triangles on the device, in the spaces of their bodies.
-struct TriangleBuffers {
-    Buffer positions;    ///< vec3 each, tightly packed
-    Buffer triangles;    ///< three uint32 indices each
-    uint32_t count = 0;  ///< triangles, < 2^30
-    /// Where they have holes; must outlive this. Null: no material is masked.
-    const BaseColorBuffers* masks = nullptr;
-
-    TriangleBuffers() = default;
-    /// Uploads. Throws Error beyond 2^30 triangles or the device's memory.
-    TriangleBuffers(Device& device, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> indices);
-};
-
 /// Triangles that the device holds for `exact` hits by voxel: their corners are one buffer.
 uint64_t most_exact_triangles(const Device& device);
-
-/// Triangles that share a cube, in a space of their own.
-struct CubeBody {
-    uint32_t first_triangle = 0, triangles = 0;
-    uint32_t resolution = 512;     ///< voxels along the longest side: 16 to 2048, rounded up to a multiple of 16
-    glm::vec3 lower{0}, upper{0};  ///< bounds; of bodies that deform: as they are now, for a guess of what they need
-    float tolerance = 0;           ///< of `tolerance` hits, in the units of the body's space
-    /// No cube is built: rays test the triangles one by one, at most PEELRAY_BARE_TRIANGLES. By voxel, built by
-    /// `compute`.
-    bool bare = false;
-};
-
-/// The next multiple of 16. Throws Error unless 16 ≤ resolution ≤ 2048.
-uint32_t round_resolution(uint32_t resolution);
 
 /// How a cube is sampled.
 enum class Sampling : uint8_t {
@@ -98,7 +73,7 @@ class Cubes {
     /// range.
     Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, const CubeLayout& layout = {});
 
-    const std::vector<CubeBody>& bodies() const { return bodies_; }
+    const std::vector<CubeBody>& bodies() const { return table.bodies(); }
     Sampling sampling() const { return sampling_; }
     const CubeLayout& layout() const { return layout_; }
     /// Samples as `exact` hits by voxel read them: in `patches`, not in `samples` and `sample_ids`.
@@ -115,11 +90,7 @@ class Cubes {
     /// Gives back what the tables have room for beyond `size`, which is what they hold.
     void trim(const TableSize& size);
 
-    /// LdcBody of every body as the last build left them.
-    std::vector<LdcBody> download_bodies(Commands& commands) const;
-
-    Buffer body_table;              ///< LdcBody each
-    Buffer body_lower, body_upper;  ///< bounds: uvec3 each, as orderedBits of shaders/bounds.glsl
+    BodyTable table;    ///< the bodies, with the grids that the last build gave them
     Buffer top_table;   ///< uvec2 per 16³ cell: bit 31 of x: occupied, y = its number; else an empty box in 16³ cells
     Buffer node_table;  ///< uint32, 64 per occupied 16³ cell: bit 31: occupied node's number; else an empty box
     Buffer voxel_table;  ///< uint32, 64 per occupied node: bit 31: first sample of a list; else an empty box in voxels
@@ -133,7 +104,6 @@ class Cubes {
 
   private:
     Device& device_;
-    std::vector<CubeBody> bodies_;
     Sampling sampling_;
     CubeLayout layout_;
 };

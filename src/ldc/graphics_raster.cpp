@@ -66,7 +66,7 @@ void record_inspect(Commands& commands, const BuildState& state, const TriangleB
                  {{"positions", triangles.positions},
                   {"triangles", triangles.triangles},
                   {"counters", state.counters},
-                  {"bodies", state.cubes.body_table}},
+                  {"bodies", state.cubes.table.entries}},
                  state.params, groups_for(state.params.triangles, 64));
 }
 

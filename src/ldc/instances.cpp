@@ -71,24 +71,24 @@ TreeParams Instances::tree_params() const {
     return p;
 }
 
-uint32_t Instances::bare(const Cubes& cubes) const {
-    return uint32_t(std::count_if(few_.begin(), few_.end(), [&](uint32_t body) { return cubes.bodies()[body].bare; }));
+uint32_t Instances::bare(const BodyTable& bodies) const {
+    return uint32_t(std::count_if(few_.begin(), few_.end(), [&](uint32_t body) { return bodies.bodies()[body].bare; }));
 }
 
-void Instances::record(Commands& commands, const Cubes& cubes, bool hierarchy) {
+void Instances::record(Commands& commands, const BodyTable& bodies, bool hierarchy) {
     commands.begin_group("instances");
     InstanceParams p{count(), filled(count()), 0};
-    uint32_t next_bare = 0, next_cube = bare(cubes);
+    uint32_t next_bare = 0, next_cube = bare(bodies);
     for (size_t i = 0; i < few_.size(); i++)
-        p.slots |= (cubes.bodies()[few_[i]].bare ? next_bare++ : next_cube++) << (4 * i);
+        p.slots |= (bodies.bodies()[few_[i]].bare ? next_bare++ : next_cube++) << (4 * i);
     // The only group of a small hierarchy needs no order.
     const Buffer& boxes = count() <= 8 ? boxes_ : unsorted_boxes_;
     commands.run(device_.pass("instances"),
                  {{"transforms", transforms_},
                   {"infos", infos_},
-                  {"bodies", cubes.body_table},
-                  {"body_lower", cubes.body_lower},
-                  {"body_upper", cubes.body_upper},
+                  {"bodies", bodies.entries},
+                  {"body_lower", bodies.lower},
+                  {"body_upper", bodies.upper},
                   {"instances", table_},
                   {"instance_cubes", cubes_},
                   {"instance_boxes", boxes}},

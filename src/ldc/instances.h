@@ -1,13 +1,15 @@
 // Bodies placed in the world, and the hierarchy over their boxes.
 #pragma once
 
+#include <span>
+
 #include "common/instance.h"
-#include "ldc/cubes.h"
+#include "ldc/body_table.h"
 #include "ldc/tree_params.h"
 
 namespace peelray {
 
-/// Instances of the bodies of some cubes. Transforms may come from the host or from a pass that writes them; after
+/// Instances of some bodies. Transforms may come from the host or from a pass that writes them; after
 /// either, record() places the cubes anew.
 class Instances {
   public:
@@ -16,16 +18,16 @@ class Instances {
     Instances(Device& device, const std::vector<InstanceInfo>& infos);
 
     uint32_t count() const { return tree_.instances; }
-    /// How many of up to 8 instances show bare bodies of these cubes; of more, 0.
-    uint32_t bare(const Cubes& cubes) const;
+    /// How many of up to 8 instances show bare bodies of these; of more, 0.
+    uint32_t bare(const BodyTable& bodies) const;
 
     /// Uploads where instances [first, first + transforms.size()) stand.
     void place(Commands& commands, std::span<const GpuTransform> transforms, uint32_t first = 0);
     const Buffer& transforms() const { return transforms_; }  ///< GpuTransform each
 
-    /// Records the passes that place the cubes as they are now, into the group "instances". Every build of a moving
+    /// Records the passes that place the bodies as they are now, into the group "instances". Every build of a moving
     /// body is followed by it. Without the `hierarchy` for rays that are not traced in the cubes.
-    void record(Commands& commands, const Cubes& cubes, bool hierarchy = true);
+    void record(Commands& commands, const BodyTable& bodies, bool hierarchy = true);
 
     const Buffer& table() const { return table_; }  ///< GpuInstance each
     const Buffer& cubes() const { return cubes_; }  ///< PeelrayInstance each

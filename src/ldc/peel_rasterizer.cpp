@@ -82,7 +82,7 @@ uint32_t PeelRasterizer::record_complexity(Commands& commands, const BuildState&
     const Binding bindings[] = {{"positions", triangles.positions},
                                 {"triangles", triangles.triangles},
                                 {"counters", state.counters},
-                                {"bodies", state.cubes.body_table},
+                                {"bodies", state.cubes.table.entries},
                                 {"layer_counts", layer_counts_}};
     const DrawRange range{0, p.triangles, 0, counting_.instances};
     DrawTargets targets;
@@ -130,7 +130,7 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
         const Binding bindings[] = {{"positions", triangles.positions},
                                     {"triangles", triangles.triangles},
                                     {"counters", state.counters},
-                                    {"bodies", state.cubes.body_table},
+                                    {"bodies", state.cubes.table.entries},
                                     {"depth_map", depth_maps_[(p.level & 1) ^ 1]},
                                     {"id_map", id_maps_[(p.level & 1) ^ 1]}};
         commands.draw_indirect(peel, with_alpha_test(bindings, triangles), p,
@@ -139,7 +139,7 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
                               {{"positions", triangles.positions},
                                {"triangles", triangles.triangles},
                                {"counters", state.counters},
-                               {"bodies", state.cubes.body_table},
+                               {"bodies", state.cubes.table.entries},
                                {"node_masks", state.node_masks},
                                {"fragments", state.fragments},
                                {"depth_map", depth_map},

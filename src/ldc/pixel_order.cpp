@@ -75,7 +75,7 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"unsorted_ids", unsorted_ids_},
                            {"positions", triangles.positions},
                            {"triangles", triangles.triangles},
-                           {"bodies", state.cubes.body_table},
+                           {"bodies", state.cubes.table.entries},
                            {"samples", state.cubes.samples},
                            {"sample_ids", state.cubes.sample_ids},
                            {"captured", state.captured},
@@ -89,7 +89,7 @@ void PixelOrder::record_lists(Commands& commands, const BuildState& state, const
                            {"long_lists", long_lists_},
                            {"positions", triangles.positions},
                            {"triangles", triangles.triangles},
-                           {"bodies", state.cubes.body_table},
+                           {"bodies", state.cubes.table.entries},
                            {"samples", state.cubes.samples},
                            {"sample_ids", state.cubes.sample_ids},
                            {"unsorted_ids", unsorted_ids_},
@@ -106,7 +106,7 @@ void PixelOrder::record_ranges(Commands& commands, const BuildState& state) {
     p.block = block.x | block.y << 16;
     commands.run(state.device.pass("ldc_ranges"),
                  {{"counters", state.counters},
-                  {"bodies", state.cubes.body_table},
+                  {"bodies", state.cubes.table.entries},
                   {"pixel_offsets", state.cubes.pixel_offsets},
                   {"samples", state.cubes.samples},
                   {"pixel_ranges", state.cubes.pixel_ranges}},
@@ -115,7 +115,7 @@ void PixelOrder::record_ranges(Commands& commands, const BuildState& state) {
     for (p.level = 2; p.level <= state.cubes.pyramid_levels(); p.level++)
         commands.run(state.device.pass("ldc_ranges_up"),
                      {{"counters", state.counters},
-                      {"bodies", state.cubes.body_table},
+                      {"bodies", state.cubes.table.entries},
                       {"pixel_ranges", state.cubes.pixel_ranges}},
                      p, groups_for(p.cell_capacity >> std::min(2 * p.level, 8u), 64));
 }

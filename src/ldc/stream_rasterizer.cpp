@@ -40,7 +40,7 @@ void StreamRasterizer::record(Commands& commands, const BuildState& state, const
         setup.depth = VK_COMPARE_OP_ALWAYS;
         setup.constants = stream.constants;
         std::vector<Binding> bindings = {{"counters", state.counters},
-                                         {"bodies", state.cubes.body_table},
+                                         {"bodies", state.cubes.table.entries},
                                          {"fragments", state.fragments},
                                          {"captured", state.captured}};
         bindings.insert(bindings.end(), stream.bindings.begin(), stream.bindings.end());

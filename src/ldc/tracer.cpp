@@ -33,7 +33,7 @@ Constants traversal_constants(const Device& device, const TracedScene& scene, Hi
     if (layout.by_pixel()) {
         constants.push_back({"batch", layout.batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE});
     } else {
-        constants.push_back({"bare_count", scene.instances.bare(scene.cubes)});
+        constants.push_back({"bare_count", scene.instances.bare(scene.cubes.table)});
         constants.push_back({"deferred", device.immediate});
     }
     return constants;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gpu/commands.h"
+#include "ldc/cubes.h"
 #include "ldc/instances.h"
 
 namespace peelray {

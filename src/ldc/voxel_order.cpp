@@ -51,7 +51,7 @@ void VoxelOrder::record(Commands& commands, const BuildState& state, const Trian
         commands.run(state.device.pass("ldc_corners"),
                      {{"positions", triangles.positions},
                       {"triangles", triangles.triangles},
-                      {"bodies", state.cubes.body_table},
+                      {"bodies", state.cubes.table.entries},
                       {"corners", state.cubes.corners}},
                      state.params, groups_for(state.params.triangles, 128));
     record_nodes(commands, state);
@@ -81,13 +81,13 @@ void VoxelOrder::record(Commands& commands, const BuildState& state, const Trian
                   Binding::if_used("sample_ids", state.cubes.sample_ids),
                   Binding::if_used("patches", state.cubes.patches),
                   Binding::if_used("corners", state.cubes.corners),
-                  {"bodies", state.cubes.body_table}},
+                  {"bodies", state.cubes.table.entries}},
                  state.params, groups_for(p.fragment_capacity, 128));
     commands.run(state.device.pass("ldc_top_boxes"),
                  {{"node_masks", state.node_masks},
                   {"occupancy_sums", occupancy_sums_},
                   {"top_table", state.cubes.top_table},
-                  {"bodies", state.cubes.body_table},
+                  {"bodies", state.cubes.table.entries},
                   {"counters", state.counters},
                   {"readback", state.readback}},
                  state.params, groups_for(p.cell_capacity, 64));
@@ -108,7 +108,7 @@ void VoxelOrder::record_nodes(Commands& commands, const BuildState& state) {
                   {"top_cells", top_cells_},
                   {"node_table", state.cubes.node_table},
                   {"node_cells", node_cells_},
-                  {"bodies", state.cubes.body_table}},
+                  {"bodies", state.cubes.table.entries}},
                  p, groups_for(p.occupied_capacity, 1));
 }
 
@@ -119,7 +119,7 @@ void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32
     commands.run(state.device.pass("ldc_sat_scan"),
                  {{"node_masks", state.node_masks},
                   {"occupancy_sums", occupancy_sums_},
-                  {"bodies", state.cubes.body_table},
+                  {"bodies", state.cubes.table.entries},
                   {"counters", state.counters}},
                  p, groups_for(p.cell_capacity, 64));
 }

@@ -154,7 +154,7 @@ void Deformer::turn_over(Commands& commands, size_t piece, const Primitive& prim
     mirrored_[piece] = mirrors;
 }
 
-void Deformer::record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles,
+void Deformer::record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles,
                       const Buffer& normals) const {
     if (empty()) return;
     commands.begin_group("animate");
@@ -168,8 +168,8 @@ void Deformer::record(Commands& commands, const Cubes& cubes, const TriangleBuff
                   {"joints", joints_},
                   {"positions", triangles.positions},
                   {"normals", normals},
-                  {"body_lower", cubes.body_lower},
-                  {"body_upper", cubes.body_upper}},
+                  {"body_lower", bodies.lower},
+                  {"body_upper", bodies.upper}},
                  params_, groups_for(params_.groups, 1));
     if (flat_)
         commands.run(device_.pass("deform_flat"),

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "assembly/assembly.h"
-#include "ldc/cubes.h"
+#include "ldc/body_table.h"
+#include "ldc/triangle_buffers.h"
 #include "motion/motion_params.h"
 
 namespace peelray {
@@ -19,9 +20,10 @@ class Deformer {
     /// inside out, or back, its triangles in `triangles` are turned over.
     void pose(Commands& commands, const Scene& scene, const Moment& moment, const Buffer& triangles);
 
-    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the cubes' bodies,
+    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the bodies,
     /// whose bounds have been emptied.
-    void record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles, const Buffer& normals) const;
+    void record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles,
+                const Buffer& normals) const;
 
     uint64_t bytes() const;
 

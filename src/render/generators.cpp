@@ -111,8 +111,8 @@ void Generators::take_steps(Commands& commands, WaterState& state) {
     }
 }
 
-void Generators::record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles, const Buffer& normals,
-                        const Instances& instances) {
+void Generators::record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles,
+                        const Buffer& normals, const Instances& instances) {
     if (empty()) return;
     commands.begin_group("animate");
     for (WaterState& state : waters_) {
@@ -123,8 +123,8 @@ void Generators::record(Commands& commands, const Cubes& cubes, const TriangleBu
                       {"velocities", state.velocities},
                       {"positions", triangles.positions},
                       {"normals", normals},
-                      {"body_lower", cubes.body_lower},
-                      {"body_upper", cubes.body_upper}},
+                      {"body_lower", bodies.lower},
+                      {"body_upper", bodies.upper}},
                      state.params, groups_for(state.water.start.size(), 64));
         if (state.params.floats > 0)
             commands.run(device_.pass("water_floats"),

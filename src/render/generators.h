@@ -3,6 +3,7 @@
 
 #include "assembly/assembly.h"
 #include "ldc/instances.h"
+#include "ldc/triangle_buffers.h"
 #include "motion/motion_params.h"
 
 namespace peelray {
@@ -20,7 +21,7 @@ class Generators {
 
     /// Records the passes into the group "animate": vertices and bounds of bodies (whose bounds have been emptied), and
     /// transforms of instances. Submits in between if there are very many steps to take.
-    void record(Commands& commands, const Cubes& cubes, const TriangleBuffers& triangles, const Buffer& normals,
+    void record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles, const Buffer& normals,
                 const Instances& instances);
 
     /// Is this node's instance placed here?

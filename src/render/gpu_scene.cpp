@@ -91,13 +91,10 @@ uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& mo
     return moved;
 }
 
-void GpuScene::record_animation(Commands& commands, const Cubes& cubes) {
-    if (const uint64_t count = cubes.bodies().size() - fixed_bodies_) {
-        commands.fill(cubes.body_lower, ~0u, fixed_bodies_ * 12ull, count * 12);
-        commands.fill(cubes.body_upper, 0, fixed_bodies_ * 12ull, count * 12);
-    }
-    deformer_.record(commands, cubes, triangles, normals);
-    generators_.record(commands, cubes, triangles, normals, instances);
+void GpuScene::record_animation(Commands& commands, const BodyTable& bodies) {
+    bodies.record_emptying(commands, fixed_bodies_);
+    deformer_.record(commands, bodies, triangles, normals);
+    generators_.record(commands, bodies, triangles, normals, instances);
 }
 
 void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) {

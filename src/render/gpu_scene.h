@@ -4,6 +4,7 @@
 #include "assembly/assembly.h"
 #include "common/instance.h"
 #include "ldc/instances.h"
+#include "ldc/triangle_buffers.h"
 #include "path/frame.h"
 #include "render/deformer.h"
 #include "render/generators.h"
@@ -35,7 +36,7 @@ class GpuScene {
     uint32_t pose(Commands& commands, const Scene& scene, const Moment& moment);
 
     /// Records what computes the vertices of this moment.
-    void record_animation(Commands& commands, const Cubes& cubes);
+    void record_animation(Commands& commands, const BodyTable& bodies);
 
     uint64_t bytes() const;
 

@@ -45,6 +45,7 @@ class PathQueues {
     uint32_t most_lights() const { return most_lights_; }
 
     PathLevel& level(uint32_t index) { return levels_[index]; }
+    const PathLevel& level(uint32_t index) const { return levels_[index]; }
     const LightQueue& lights() const { return lights_; }
     /// QUEUE_WORDS counters, to be cleared for each band.
     const Buffer& counters() const { return counters_; }

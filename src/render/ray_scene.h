@@ -2,15 +2,14 @@
 // with but what tells of holes.
 #pragma once
 
-#include "ldc/tracer.h"
-#include "render/tracer_choice.h"
+#include "render/tracers/ray_tracer.h"
 
 namespace peelray {
 
 class RayScene {
   public:
-    /// Uploads the scene at a moment, which is that of its assembly, and builds what rays are traced in: Tracer::ldc or
-    /// khr. Throws Error where the device has no acceleration structures.
+    /// Uploads the scene at a moment, which is that of its assembly, and builds what the tracer needs. Throws Error
+    /// where the device has no acceleration structures for Tracer::khr.
     RayScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
              const TracerChoice& choice);
     RayScene(const RayScene&) = delete;
@@ -25,34 +24,24 @@ class RayScene {
     void record_hits(Commands& commands, const RayQueue& queue, const Buffer& hits, bool any_hit, Edges edges);
     void record_translation(Commands& commands, const Buffer& hits, uint32_t count, const Buffer& file_hits);
 
-    /// Records the build of what is built for every frame, and where it stands. After the submission finish_build()
-    /// tells whether everything fitted; if not, it is to be recorded again.
-    void record_build(Commands& commands);
-    bool finish_build(Commands& commands) { return structures_ || cubes_.finish(commands); }
+    /// Of what is built for every frame, and where it stands: see RayTracer.
+    void record_build(Commands& commands) { tracer_->record_rebuild(commands); }
+    bool finish_build(Commands& commands) { return tracer_->finish_rebuild(commands); }
 
-    const SceneCubes& cubes() const { return cubes_; }
-    /// Null: rays are traced in the cubes.
-    const Structures* structures() const { return structures_.get(); }
+    const RayTracer& tracer() const { return *tracer_; }
+    TracerStats stats(Commands& commands) const;
     const Instances& instances() const { return instances_; }
-    std::vector<LdcBody> download_bodies(Commands& commands) const { return cubes_.cubes().download_bodies(commands); }
-    std::vector<uint32_t> shown() const { return shown_; }  ///< instances of each body
-    const std::vector<PassTime>& build_times() const { return build_times_; }
-    double build_ms() const { return build_ms_; }
+    /// What the first build took.
+    const FrameMeter& build() const { return build_; }
 
   private:
-    void build_cubes(Commands& commands);
-    void build_structures(Commands& commands, const Scene& scene, const Assembly& assembly, const TracerChoice& choice);
-
     Device& device_;
     TriangleBuffers triangles_;
     BaseColorBuffers base_colors_;  ///< only where a material is masked
     Buffer triangle_ids_, hits_;
     Instances instances_;
-    SceneCubes cubes_;
-    std::unique_ptr<Structures> structures_;
-    std::vector<uint32_t> shown_;
-    std::vector<PassTime> build_times_;
-    double build_ms_ = 0;
+    std::unique_ptr<RayTracer> tracer_;
+    FrameMeter build_;
 };
 
 }  // namespace peelray

@@ -37,7 +37,7 @@ TEST_P(KhrOnScene, HitsAreThoseOfTheCubesAndTheOracle) {
     structures.tracer = Tracer::khr;
     structures.structures = StructureUpdate::keep;
     RayScene khr(device(), scene, rest, assembly, structures), ldc(device(), scene, rest, assembly, {});
-    EXPECT_EQ(khr.structures()->stats().bodies, assembly.bodies.size());
+    EXPECT_EQ(khr.stats(commands()).structures.bodies, assembly.bodies.size());
     for (const RayKind kind : {RayKind::uniform, RayKind::grazing, RayKind::axis_parallel}) {
         test::RaySource source(geometry, 77);
         std::vector<Ray> rays(20'000);

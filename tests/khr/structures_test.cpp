@@ -169,7 +169,7 @@ TEST_F(StructuresTest, FollowInstancesThatMove) {
     const Ray ray{{0.5f, -0.25f, 0}, 0, {0, 0, 1}, kInfinity};
     const auto place = [&](const GpuTransform& at) {
         body_->instances.place(commands(), std::span<const GpuTransform>(&at, 1));
-        body_->instances.record(commands(), body_->cubes, false);
+        body_->instances.record(commands(), body_->cubes.table, false);
         structures_->record(commands(), true);
         commands().submit();
     };

@@ -97,7 +97,7 @@ class BuildersTest : public DeviceTest {
         return found;
     }
     Built look_at(const test::SingleCube& cube) {
-        const LdcBody body = cube.cubes.download_bodies(commands())[0];
+        const LdcBody body = cube.cubes.table.download(commands())[0];
         return {body, cube.counts(), samples_of(cube.cubes, body, cube.builder.size(), &cube.counts())};
     }
     Built build(const Mesh3& mesh, uint32_t resolution, Sampling sampling, const CubeLayout& layout) {
@@ -435,7 +435,7 @@ TEST_F(BuildersTest, ManyBodiesInOneBuildAndBesideOthers) {
                 CubeBuilder second(device(), commands(), cubes, 2, count - 2, first.size());
                 second.build(commands(), triangles);
                 second.build(commands(), triangles);
-                const auto tables = cubes.download_bodies(commands()), others = expected.download_bodies(commands());
+                const auto tables = cubes.table.download(commands()), others = expected.table.download(commands());
                 uint64_t samples = 0;
                 for (size_t i = 0; i < bodies.size(); i++) {
                     if (bodies[i].triangles == 0) continue;

@@ -30,7 +30,7 @@ class CubeTest : public DeviceTest {
         return {device(), commands(), mesh.positions, mesh.triangles, mesh.lower, mesh.upper, resolution, sampling};
     }
     Built look_at(const test::SingleCube& cube) {
-        return {cube.cubes.download_bodies(commands())[0], cube.counts(),
+        return {cube.cubes.table.download(commands())[0], cube.counts(),
                 test::download(commands(), cube.cubes, cube.builder.size())};
     }
     Built build(const Mesh3& mesh, uint32_t resolution, Sampling sampling) {
@@ -240,7 +240,7 @@ class BodiesTest : public CubeTest {
     /// All bodies as they lie in the tables.
     void expect_bodies(const Cubes& cubes, const TableSize& size, Sampling sampling) {
         const test::Tables tables = test::download(commands(), cubes, size);
-        const std::vector<LdcBody> bodies = cubes.download_bodies(commands());
+        const std::vector<LdcBody> bodies = cubes.table.download(commands());
         uint64_t samples = 0, nodes = 0, occupied = 0;
         for (size_t i = 0; i < bodies.size(); i++) {
             SCOPED_TRACE(testing::Message() << "body " << i);
@@ -296,13 +296,13 @@ TEST_F(BodiesTest, FollowTheirBounds) {
     Cubes cubes(device(), bodies_, Sampling::conservative);
     CubeBuilder builder(device(), commands(), cubes, 0, uint32_t(bodies_.size()));
     builder.build(commands(), triangles);
-    const auto before = cubes.download_bodies(commands());
+    const auto before = cubes.table.download(commands());
     std::vector<CubeBody> wider = bodies_;
     wider.back().upper *= 3.0f;
     const Cubes other(device(), wider, Sampling::conservative);
-    commands().copy(other.body_upper, cubes.body_upper, bodies_.size() * 12);
+    commands().copy(other.table.upper, cubes.table.upper, bodies_.size() * 12);
     builder.build(commands(), triangles);
-    const auto after = cubes.download_bodies(commands());
+    const auto after = cubes.table.download(commands());
     for (size_t i = 0; i < bodies_.size(); i++) {
         const CubeGrid expected = make_grid(wider[i].lower, wider[i].upper, wider[i].resolution);
         EXPECT_EQ(after[i].grid.dims, expected.dims) << i;

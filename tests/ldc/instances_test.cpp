@@ -103,7 +103,7 @@ class InstancesTest : public DeviceTest {
         std::vector<GpuTransform> transforms;
         for (const Placed& p : placed) transforms.push_back({glm::mat3(p.to_world), vec3(p.to_world[3])});
         world.instances.place(commands(), std::span<const GpuTransform>(transforms));
-        world.instances.record(commands(), world.cubes);
+        world.instances.record(commands(), world.cubes.table);
         commands().submit();
     }
 

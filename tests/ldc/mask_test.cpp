@@ -53,7 +53,7 @@ class MaskedCubeTest : public DeviceTest {
 
     std::vector<DecodedCube::Sample> samples(const test::SingleCube& cube) {
         const test::Tables found = tables(cube);
-        return DecodedCube(cube.cubes.download_bodies(commands())[0], found).samples;
+        return DecodedCube(cube.cubes.table.download(commands())[0], found).samples;
     }
 
     /// Is there a surface at the centre of a sample's pixel? Nothing where a hundredth of a pixel beside decides
@@ -84,7 +84,7 @@ TEST_F(MaskedCubeTest, CentresInHolesGiveNoSamplesAndOthersStay) {
         const test::SingleCube with = cube(resolution, Sampling::band, &masks),
                                without = cube(resolution, Sampling::band, nullptr);
         const test::Tables masked_tables = tables(with), whole_tables = tables(without);
-        const LdcBody body = with.cubes.download_bodies(commands())[0];
+        const LdcBody body = with.cubes.table.download(commands())[0];
         const DecodedCube masked(body, masked_tables), whole(body, whole_tables);
         masked.expect_whole(with.counts());
         std::map<uint64_t, glm::uvec4> left;

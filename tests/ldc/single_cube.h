@@ -30,9 +30,9 @@ struct SingleCube {
 
     void build(Commands& commands) {
         builder.build(commands, triangles);
-        instances.record(commands, cubes);
+        instances.record(commands, cubes.table);
         commands.submit();
-        grid = cubes.download_bodies(commands)[0].grid;
+        grid = cubes.table.download(commands)[0].grid;
     }
     const LdcCounters& counts() const { return builder.counts(); }
     TracedScene traced() const { return {cubes, instances, triangles}; }

@@ -96,7 +96,7 @@ TEST_F(StreamTest, GivesTheCubeOfTheSameTriangles) {
                              {"stream_ribbons", "stream_holes", 0, {{"places", places}}, {}, &ribbons, 2, 0}});
         builder.build(commands(), triangles);
 
-        const LdcBody body = cubes.download_bodies(commands())[0];
+        const LdcBody body = cubes.table.download(commands())[0];
         const auto tables = test::download_pixels(commands(), cubes, builder.size()),
                    others = test::download_pixels(commands(), expected, compute.size());
         const auto attributes = commands().download<glm::uvec2>(cubes.sample_attributes, tables.ids.size());

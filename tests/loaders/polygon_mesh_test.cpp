@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "loaders/scene_files.h"
 #include "loaders/triangulate.h"
 #include "scene/normals.h"
-#include "loaders/scene_files.h"
 
 namespace peelray::testing {
 namespace {

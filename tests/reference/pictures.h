@@ -7,8 +7,6 @@
 
 namespace peelray {
 
-enum class Tracer : uint8_t { ldc, none };
-
 /// The settings that the GPU's tests know; the reference has no cube to choose a resolution for.
 struct RenderSettings : PictureSettings {
     struct {

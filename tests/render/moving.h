@@ -34,8 +34,8 @@ struct MovedScene {
     void pose(double time) {
         moment = moment_of(scene, which, time);
         gpu.pose(commands, scene, moment);
-        gpu.record_animation(commands, cubes.cubes());
-        gpu.instances.record(commands, cubes.cubes());
+        gpu.record_animation(commands, cubes.cubes().table);
+        gpu.instances.record(commands, cubes.cubes().table);
         commands.submit();
     }
 

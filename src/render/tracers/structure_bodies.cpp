@@ -1,4 +1,4 @@
-#include "render/structure_bodies.h"
+#include "render/tracers/structure_bodies.h"
 
 #include "scene/alpha_test.h"
 

@@ -15,6 +15,8 @@ struct TracerChoice {
     /// `keep` leaves all as they were first: for measuring the rays alone.
     StructureUpdate structures = StructureUpdate::rebuild;
 
+    bool operator==(const TracerChoice&) const = default;
+
     /// How many of the first bodies are built once.
     uint32_t fixed_bodies(const Assembly& assembly) const { return rebuild ? 0 : assembly.fixed; }
 };

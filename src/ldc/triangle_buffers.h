@@ -1,0 +1,25 @@
+// A scene's triangles on the device.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "gpu/buffer.h"
+#include "ldc/base_color.h"
+
+namespace peelray {
+
+/// Triangles on the device, in the spaces of their bodies.
+struct TriangleBuffers {
+    Buffer positions;    ///< vec3 each, tightly packed
+    Buffer triangles;    ///< three uint32 indices each
+    uint32_t count = 0;  ///< triangles, < 2^30
+    /// Where they have holes; must outlive this. Null: no material is masked.
+    const BaseColorBuffers* masks = nullptr;
+
+    TriangleBuffers() = default;
+    /// Uploads. Throws Error beyond 2^30 triangles or the device's memory.
+    TriangleBuffers(Device& device, std::span<const glm::vec3> vertices, std::span<const glm::uvec3> indices);
+};
+
+}  // namespace peelray

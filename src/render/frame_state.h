@@ -1,0 +1,47 @@
+// What the stages of a frame share.
+#pragma once
+
+#include "render/bands.h"
+#include "render/camera_view.h"
+#include "render/cost_counter.h"
+#include "render/cube_maps.h"
+#include "render/tracers/ray_tracer.h"
+
+namespace peelray {
+
+struct FrameState {
+    Device& device;
+    Commands commands;
+    GpuScene scene;
+    CameraView view;
+    PathQueues queues;
+    std::unique_ptr<RayTracer> tracer;
+    std::unique_ptr<CubeMaps> maps;        ///< null: rays are shaded, not looked up
+    std::unique_ptr<CostCounter> counter;  ///< null: nothing is counted
+
+    // Of the picture that is being made:
+    RenderSettings settings;
+    Frame constants{};
+    Bands bands;
+    uint32_t last_level = 0;
+
+    FrameState(Device& device, const Scene& source, const Moment& moment, const Assembly& assembly,
+               const Environment& environment)
+        : device(device),
+          commands(device),
+          scene(device, source, moment, assembly, environment),
+          view(device),
+          queues(device) {}
+
+    /// Shadow rays that a hit may start.
+    uint32_t lights_per_hit() const {
+        if (!tracer->traces()) return 0;
+        return (settings.shadow ? uint32_t(scene.light_list.size()) : 0) + (settings.ambient ? 1 : 0);
+    }
+    uint64_t pixels() const { return uint64_t(settings.width) * settings.height; }
+};
+
+/// Of the camera's level in the band that starts at a row, or of a deeper one.
+LevelParams level_params(const FrameState& f, uint32_t level, uint32_t sample, uint32_t first_row);
+
+}  // namespace peelray

@@ -1,0 +1,106 @@
+#include "render/paths.h"
+
+#include <optional>
+
+namespace peelray {
+namespace {
+
+void record_scatter(FrameState& f, const LevelParams& p) {
+    PathQueues& queues = f.queues;
+    const GpuScene& scene = f.scene;
+    const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
+    const bool camera = p.level == 0;  // which makes its rays itself
+    const std::vector<Binding> bindings =
+        surface_bindings(scene, f.view.target.frame,
+                         {{"environment", scene.environment},
+                          Binding::if_used("rays", camera ? nullptr : &level.rays),
+                          Binding::if_used("states", camera ? nullptr : &level.states),
+                          Binding::if_used("hits", camera ? nullptr : &level.hits),
+                          {"nodes", level.nodes},
+                          {"branches", level.branches},
+                          {"queue", queues.counters()},
+                          {"next_rays", next.rays},
+                          {"next_states", next.states},
+                          {"next_skip", next.skip},
+                          {"lights", scene.lights},
+                          {"shadow_rays", queues.lights().rays},
+                          {"shadow_skip", queues.lights().skip},
+                          {"shadow_light", queues.lights().light},
+                          {"visibility", f.view.target.visibility},
+                          {"draws", scene.draw_table}});
+    const Pass& pass = f.device.pass("scatter", {{"camera", camera}, {"by_number", camera && f.view.by_number()}});
+    if (camera)
+        f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
+    else
+        f.commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(p.level));
+}
+
+/// Entry `counter` of the counters says how many rays there are, entry `groups` for how many it is launched.
+RayQueue queue_of(const PathQueues& queues, const Buffer& rays, const Buffer& skip, uint32_t capacity, uint32_t counter,
+                  uint32_t groups) {
+    return {rays,
+            &skip,
+            capacity,
+            &queues.counters(),
+            counter,
+            &queues.counters(),
+            PathQueues::groups_offset(groups),
+            PathQueues::launch_offset(groups)};
+}
+
+void record_trace(FrameState& f, uint32_t level) {
+    const PathLevel& rays = f.queues.level(level);
+    RayQueue queue = queue_of(f.queues, rays.rays, rays.skip, rays.capacity, level, level);
+    std::optional<CountBuffers> counting;
+    if (f.counter) queue.counting = &counting.emplace(f.counter->level(level));
+    f.tracer->trace(f.commands, queue, rays.hits, {});
+}
+
+void record_shadows(FrameState& f) {
+    const LightQueue& lights = f.queues.lights();
+    RayQueue queue = queue_of(f.queues, lights.rays, lights.skip, lights.capacity, QUEUE_LIGHT, QUEUE_GROUPS_LIGHT);
+    std::optional<CountBuffers> counting;
+    if (f.counter) queue.counting = &counting.emplace(f.counter->lights());
+    std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
+    surfaces.push_back({"normals", f.scene.normals});
+    surfaces.push_back({"frame", f.view.target.frame});
+    f.tracer->shadow(f.commands, {queue, lights.light, f.scene.has_glass, if_used(surfaces)});
+}
+
+void record_gather(FrameState& f, const LevelParams& p) {
+    PathQueues& queues = f.queues;
+    f.commands.run_indirect(f.device.pass("gather"),
+                            {{"nodes", queues.level(p.level).nodes},
+                             {"branches", queues.level(p.level).branches},
+                             {"next_nodes", queues.level(p.level + 1).nodes},
+                             {"shadow_light", queues.lights().light},
+                             {"queue", queues.counters()}},
+                            p, queues.counters(), PathQueues::groups_offset(p.level));
+}
+
+}  // namespace
+
+LevelParams level_params(const FrameState& f, uint32_t level, uint32_t sample, uint32_t first_row) {
+    LevelParams p{};
+    p.level = level;
+    p.capacity = f.queues.level(level).capacity;
+    p.next_capacity = f.queues.level(level + 1).capacity;
+    p.sample_index = sample;
+    p.jitter = sample_position(sample);
+    p.first_row = first_row;
+    p.light_capacity = f.queues.lights().capacity;
+    // Level 0 holds exactly the band's pixels.
+    if (level == 0) p.capacity = f.bands.pixels(first_row);
+    return p;
+}
+
+void record_paths(FrameState& f, uint32_t sample, uint32_t first_row) {
+    for (uint32_t level = 0; level <= f.last_level; level++) {
+        if (level > 0) record_trace(f, level);
+        record_scatter(f, level_params(f, level, sample, first_row));
+    }
+    if (f.lights_per_hit() > 0) record_shadows(f);
+    for (uint32_t level = f.last_level; level-- > 1;) record_gather(f, level_params(f, level, sample, first_row));
+}
+
+}  // namespace peelray

@@ -1,0 +1,42 @@
+// The picture itself: samples are added up, post passes work on the sum, and it is encoded for a display.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "gpu/commands.h"
+#include "render/path_queues.h"
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// Records a pass between accumulation and tone mapping. It works on the finished picture in place: vec4 of each pixel,
+/// row by row, the sum over the samples before exposure; alpha: how many of the samples met a surface.
+using PostPass = std::function<void(Commands& commands, const Buffer& picture, const PictureSettings& settings)>;
+
+class PictureOutput {
+  public:
+    explicit PictureOutput(Device& device) : device_(device) {}
+
+    void add(PostPass pass) { post_passes_.push_back(std::move(pass)); }
+
+    /// Makes room.
+    void prepare(const PictureSettings& settings);
+    /// Records that a band of the camera's level is added to the picture; `frame`: the view's constants. What no post
+    /// pass waits for is encoded along with the last sample.
+    void record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame, const LevelParams& p,
+                             const PictureSettings& settings);
+    /// Once all bands have been submitted: records the post passes, if there are any, and the encoding. False: nothing
+    /// was left to do.
+    bool record_post(Commands& commands, const PictureSettings& settings);
+    void download(Commands& commands, const PictureSettings& settings, Picture& out) const;
+
+    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes(); }
+
+  private:
+    Device& device_;
+    std::vector<PostPass> post_passes_;
+    Buffer picture_, encoded_;
+};
+
+}  // namespace peelray

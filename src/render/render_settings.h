@@ -1,0 +1,21 @@
+// What a picture is to look like and how it is traced.
+#pragma once
+
+#include "render/tracers/tracer_choice.h"
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// What a picture is to look like and how it is traced. Defaults are those of the command line.
+struct RenderSettings : PictureSettings, TracerChoice {
+    bool hit_auto = true;  ///< choose cubes.hit by the number of triangles
+    Visibility visibility = Visibility::automatic;
+    uint32_t repeat = 1;      ///< frames to render; times are medians over them
+    bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
+    bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
+};
+
+/// What `auto` stands for in a scene of so many triangles.
+CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings);
+
+}  // namespace peelray

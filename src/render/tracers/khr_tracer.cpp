@@ -1,0 +1,63 @@
+#include "render/tracers/khr_tracer.h"
+
+#include "khr/tracer.h"
+#include "render/tracers/no_tracer.h"
+
+namespace peelray {
+namespace {
+
+std::vector<StructureBody> updated(std::vector<StructureBody> bodies, const TracerChoice& choice, uint32_t fixed) {
+    for (size_t i = 0; i < bodies.size(); i++) bodies[i].update = i < fixed ? StructureUpdate::keep : choice.structures;
+    return bodies;
+}
+
+}  // namespace
+
+KhrTracer::KhrTracer(const TracedWorld& world, const TracerChoice& choice)
+    : device_(world.device),
+      triangles_(world.triangles),
+      instances_(world.instances),
+      update_(choice.structures),
+      structures_(world.device, world.triangles, world.instances,
+                  updated(world.structures, choice, choice.fixed_bodies(world.assembly))),
+      bodies_(plain_bodies(world.device, world.assembly)) {}
+
+void KhrTracer::pose(bool moved) {
+    moved_ = moved || (moved_ && !built_);
+    built_ = false;
+}
+
+void KhrTracer::build(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) {
+    animate();
+    instances_.record(commands, bodies_, false);
+    structures_.build_kept(commands, [&] { meter.add(commands); });
+    structures_.record(commands, moved_);
+    commands.submit();
+    meter.add(commands);
+    built_ = true;
+}
+
+void KhrTracer::trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) {
+    record_khr_trace(commands, device_, structures_, triangles_, queue, hits, query.any_hit);
+}
+
+void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
+    const RayPass& pass = khr_pass(device_, shadows.glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
+                                   shadows.glass ? KhrRays::nearest : KhrRays::occluded, triangles_.masks != nullptr);
+    std::vector<Binding> bindings = shadows.surfaces;
+    bindings.push_back(Binding::if_used("positions", triangles_.positions));
+    bindings.push_back(Binding::if_used("triangles", triangles_.triangles));
+    bindings.push_back(Binding::if_used("instances", instances_.table()));
+    bindings.push_back({"shadow_rays", shadows.rays.rays});
+    bindings.push_back(Binding::if_used("shadow_skip", *shadows.rays.skip));
+    bindings.push_back({"shadow_light", shadows.light});
+    bindings.push_back({"queue", *shadows.rays.counters});
+    record_khr_rays(commands, device_, pass, khr_bindings(structures_, bindings), shadows.rays.count, shadows.rays);
+}
+
+void KhrTracer::describe(Commands&, TracerStats& stats) const {
+    stats.structures = structures_.stats();
+    stats.update = update_;
+}
+
+}  // namespace peelray

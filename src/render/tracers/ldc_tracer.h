@@ -1,0 +1,41 @@
+// Rays in layered depth cubes.
+#pragma once
+
+#include "render/tracers/ray_tracer.h"
+
+namespace peelray {
+
+class LdcTracer : public RayTracer {
+  public:
+    LdcTracer(const TracedWorld& world, const TracerChoice& choice);
+
+    const SceneCubes& cubes() const { return cubes_; }
+
+    bool traces() const override { return true; }
+    bool counts() const override { return true; }
+    const BodyTable& bodies() const override { return cubes_.cubes().table; }
+    void pose(bool) override { fits_ = false; }
+    void build(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) override;
+    void record_rebuild(Commands& commands) override;
+    bool finish_rebuild(Commands& commands) override { return cubes_.finish(commands); }
+    void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) override;
+    void shadow(Commands& commands, const ShadowRays& shadows) override;
+    void describe(Frame& frame) const override;
+    void describe(Commands& commands, TracerStats& stats) const override;
+
+  private:
+    TracedScene traced() const { return {cubes_.cubes(), instances_, triangles_}; }
+    const CubeChoice& choice() const { return cubes_.choice(); }
+    /// World units; 0 of other hits.
+    float tolerance() const { return choice().hit == HitTest::tolerance ? choice().tolerance : 0; }
+
+    Device& device_;
+    const TriangleBuffers& triangles_;
+    Instances& instances_;
+    SceneCubes cubes_;
+    std::vector<uint32_t> shown_;  ///< instances of each body
+    bool fits_ = false;            ///< this moment's cubes have been built before: it is known that they find room
+    uint32_t rebuilt_ = 0;
+};
+
+}  // namespace peelray
