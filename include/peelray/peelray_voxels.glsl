@@ -29,6 +29,124 @@ bool peelrayMayHit(uvec4 data, PeelraySegment segment) {
     return (data.y >> (16u + bit.y * 4u + bit.x) & 1u) != 0u;
 }
 
+/// The mirrored space in which a ray goes up along every axis, where cells are walked: mirrored coordinates are ~coordinate.
+struct PeelrayMirror {
+    bvec3 up;    ///< the ray goes up anyway
+    ivec3 flip;  ///< what coordinates are xor-ed with
+    uint upper;  ///< of a packed box, the bits of those ends that the ray leaves through
+};
+
+PeelrayMirror peelrayMirror(vec3 direction) {
+    const bvec3 up = greaterThanEqual(direction, vec3(0));
+    return PeelrayMirror(up, ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1),
+                         (up.x ? 3u : 0u) | (up.y ? 12u : 0u) | (up.z ? 48u : 0u));
+}
+
+/// What stands at a cell: a list of samples, or an empty box.
+struct PeelrayCell {
+    ivec3 last;  ///< the box's last cell along the ray, mirrored
+    bool more;   ///< the list has samples left
+    uint j;      ///< its next sample
+};
+
+/// `at`: the cell; `tops`: tables of 16x16x16 cells along each axis.
+PeelrayCell peelrayCellAt(PeelrayInstance place, uvec3 tops, uvec3 at, PeelrayMirror mirror) {
+    PeelrayCell cell;
+    cell.more = false;
+    cell.j = 0u;
+    const uvec3 top = at >> 4u;
+    const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
+    if ((top_entry.x >> 31u) == 0u) {
+        const uvec3 word = uvec3(mirror.up.x ? top_entry.y : top_entry.x, mirror.up.y ? top_entry.y : top_entry.x,
+                                 mirror.up.z ? top_entry.y : top_entry.x);
+        cell.last = (ivec3(word.x & 1023u, word.y >> 10u & 1023u, word.z >> 20u & 1023u) << 4 ^ mirror.flip) | 15;
+        return cell;
+    }
+    uint entry = PEELRAY_NODE(top_entry.y << 6u | (at.z & 12u) << 2u | (at.y & 12u) | (at.x >> 2u & 3u));
+    int scale = 2;
+    if ((entry >> 31u) != 0u) {
+        entry = PEELRAY_VOXEL(entry << 6u | (at.z & 3u) << 4u | (at.y & 3u) << 2u | (at.x & 3u));
+        scale = 0;
+        cell.more = (entry >> 31u) != 0u;
+        cell.j = entry & 0x7fffffffu;
+    }
+    const int inside = cell.more ? 0 : (4 << scale) - 1;
+    const uint ends = (entry >> 6u & mirror.upper) | (entry & ~mirror.upper);
+    const uvec3 end = cell.more ? uvec3(0) : (uvec3(ends, ends >> 2u, ends >> 4u) & 3u) << scale;
+    cell.last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror.flip) | ((1 << scale) - 1);
+    return cell;
+}
+
+/// Tests the list from sample `j` on for `exact` hits; `found_one` becomes true with one. `segment`: the ray's way through the cell.
+void peelrayTestTriangles(PeelrayInstance place, PeelrayRay ray, uint skip, PeelrayOptions options, PeelraySegment segment,
+                          PeelrayShear shear, uint j, inout PeelrayLocal r, inout PeelrayHit hit, inout bool found_one) {
+    bool more = true;
+    // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
+    do {
+        uint candidate = PEELRAY_MISS;
+        while (more && candidate == PEELRAY_MISS && !(options.any_hit && found_one)) {
+            PEELRAY_COUNT(samples);
+            const uvec4 data = PEELRAY_PATCH(j);
+            more = (data.z & 1u) == 0u;
+            if (peelrayMayHit(data, segment)) {
+                const uint id = data.w >> 2u;
+                if (id != skip) {
+                    if (PEELRAY_DEFER)
+                        candidate = id;
+                    else if (peelrayTestTriangle(place, ray, id, true, shear, r, hit))
+                        found_one = true;
+                }
+            }
+            j++;
+        }
+        if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, true, shear, r, hit)) found_one = true;
+    } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));
+}
+
+/// `tolerance`: does the ray pass this sample of the cell `at` nearly enough, at `s_hit`?
+bool peelrayHitsDepth(uvec2 data, PeelrayLocal r, uvec3 at, out float s_hit) {
+    // Word 0: the depth in the cell, a float; word 1: axis (bits 0 and 1), last of its list (bit 31).
+    const uint axis = data.y & 3u;
+    const float w = uintBitsToFloat(data.x);
+    return peelrayTestDepth(r, r.tolerance[axis], peelrayToLdi(r.o - vec3(at), axis), peelrayToLdi(r.d, axis), peelrayToLdi(r.inv, axis), w,
+                            s_hit);
+}
+
+/// `planar`: does the ray meet this sample's plane inside its footprint, at `s_hit`? `from_centre`: the ray's origin from the cell's.
+bool peelrayHitsPlane(uvec2 data, PeelrayLocal r, vec3 from_centre, out float s_hit) {
+    // The plane's normal along x, y (word 0) and z (low half of word 1): half floats, 1 along its LDI's axis and nowhere else; its
+    // distance from the cell's centre along that axis (bits 16 to 30: [-2.5, 2.5] voxels); last of its list (bit 31).
+    const vec3 normal = vec3(unpackHalf2x16(data.x), unpackHalf2x16(data.y).x);
+    const float w = float(data.y >> 16u & 0x7fffu) * (5.0 / 32767.0) - 2.5;
+    s_hit = (w - dot(normal, from_centre)) / dot(normal, r.d);
+    // The footprint is one of pixels: along the axis it has no bounds.
+    const vec3 place_in_cell = abs(from_centre + s_hit * r.d);
+    return s_hit > r.s_min && s_hit <= r.s_best && (place_in_cell.x <= PEELRAY_FOOTPRINT || normal.x == 1.0) &&
+           (place_in_cell.y <= PEELRAY_FOOTPRINT || normal.y == 1.0) && (place_in_cell.z <= PEELRAY_FOOTPRINT || normal.z == 1.0);
+}
+
+/// Tests the list from sample `j` on for hits of samples: `planar` or `tolerance`.
+void peelrayTestSamples(uint skip, PeelrayOptions options, uvec3 at, uint j, inout PeelrayLocal r, inout PeelrayHit hit,
+                        inout bool found_one) {
+    const vec3 from_centre = r.o - (vec3(at) + 0.5);
+    bool more = true;
+    while (more) {
+        PEELRAY_COUNT(samples);
+        const uvec2 data = PEELRAY_SAMPLE(j);
+        float s_hit;
+        if (options.hit == PEELRAY_TOLERANCE ? peelrayHitsDepth(data, r, at, s_hit) : peelrayHitsPlane(data, r, from_centre, s_hit)) {
+            const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
+            if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
+                r.s_best = s_hit;
+                hit.triangle = id;
+                found_one = true;
+            }
+        }
+        more = (data.y >> 31u) == 0u;
+        j++;
+    }
+}
+
 /// Nearest hit of a ray in one instance's cube, by voxel, with tmin < t < hit.t replaces `hit`; with any_hit: some hit. The ray is
 /// valid (peelrayTrace), `skip` a triangle that does not count.
 void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {
@@ -36,126 +154,42 @@ void peelrayTraceVoxels(uint instance, PeelrayRay ray, uint skip, PeelrayOptions
     PeelrayLocal r;
     if (!peelrayEnterCube(place, ray, hit.t, options, r)) return;
     const uvec3 tops = uvec3(r.last + 1) >> 4u;
-    // Cells are walked in a mirrored space, where the ray goes up along every axis: mirrored coordinates are ~coordinate.
-    const bvec3 up = greaterThanEqual(r.d, vec3(0));
-    const ivec3 mirror = ivec3(up.x ? 0 : -1, up.y ? 0 : -1, up.z ? 0 : -1);
+    const PeelrayMirror mirror = peelrayMirror(r.d);
     const vec3 o_inv = r.o * r.inv;
-    // Of a packed box only the end that the ray leaves through is looked at.
-    const uint upper = (up.x ? 3u : 0u) | (up.y ? 12u : 0u) | (up.z ? 48u : 0u);
     const PeelrayShear shear = peelrayShear(r.d);
     float s = r.s_begin;
-    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last) ^ mirror;
-    const ivec3 beyond = ivec3(up.x ? r.last.x + 1 : 0, up.y ? r.last.y + 1 : 0, up.z ? r.last.z + 1 : 0);
+    ivec3 cell = clamp(ivec3(floor(r.o + s * r.d)), ivec3(0), r.last) ^ mirror.flip;
+    const ivec3 beyond = ivec3(mirror.up.x ? r.last.x + 1 : 0, mirror.up.y ? r.last.y + 1 : 0, mirror.up.z ? r.last.z + 1 : 0);
     bool found_one = false;
 
     while (true) {
         PEELRAY_COUNT(steps);
-        // The cell's entry: a list of samples, or an empty box. `last`: the box's last cell along the ray.
-        const uvec3 at = uvec3(cell ^ mirror);
-        const uvec3 top = at >> 4u;
-        const uvec2 top_entry = PEELRAY_TOP(place.first_cell + (top.z * tops.y + top.y) * tops.x + top.x);
-        ivec3 last;
-        bool more = false;  // the list has samples left
-        uint j = 0u;        // its next sample
-        if ((top_entry.x >> 31u) == 0u) {
-            const uvec3 word = uvec3(up.x ? top_entry.y : top_entry.x, up.y ? top_entry.y : top_entry.x, up.z ? top_entry.y : top_entry.x);
-            last = (ivec3(word.x & 1023u, word.y >> 10u & 1023u, word.z >> 20u & 1023u) << 4 ^ mirror) | 15;
-        } else {
-            uint entry = PEELRAY_NODE(top_entry.y << 6u | (at.z & 12u) << 2u | (at.y & 12u) | (at.x >> 2u & 3u));
-            int scale = 2;
-            if ((entry >> 31u) != 0u) {
-                entry = PEELRAY_VOXEL(entry << 6u | (at.z & 3u) << 4u | (at.y & 3u) << 2u | (at.x & 3u));
-                scale = 0;
-                more = (entry >> 31u) != 0u;
-                j = entry & 0x7fffffffu;
-            }
-            const int inside = more ? 0 : (4 << scale) - 1;
-            const uint ends = (entry >> 6u & upper) | (entry & ~upper);
-            const uvec3 end = more ? uvec3(0) : (uvec3(ends, ends >> 2u, ends >> 4u) & 3u) << scale;
-            last = (((ivec3(at) & ~inside) | ivec3(end)) ^ mirror) | ((1 << scale) - 1);
-        }
-        const vec3 exits = vec3(last + 1) * abs(r.inv) - o_inv;
+        const uvec3 at = uvec3(cell ^ mirror.flip);
+        const PeelrayCell here = peelrayCellAt(place, tops, at, mirror);
+        const vec3 exits = vec3(here.last + 1) * abs(r.inv) - o_inv;
         const float s_out = min(exits.x, min(exits.y, exits.z));
-
-        if (more) {
+        if (here.more) {
             PEELRAY_COUNT(cells);
             if (options.hit == PEELRAY_EXACT) {
-                PeelraySegment segment;
                 const vec3 from_centre = r.o - (vec3(at) + 0.5);
-                segment.enters = from_centre + s * r.d;
-                segment.leaves = from_centre + min(s_out, r.s_best) * r.d;
-                // Triangles may be tested together after the samples of neighbouring rays: PEELRAY_DEFER.
-                do {
-                    uint candidate = PEELRAY_MISS;
-                    while (more && candidate == PEELRAY_MISS && !(options.any_hit && found_one)) {
-                        PEELRAY_COUNT(samples);
-                        const uvec4 data = PEELRAY_PATCH(j);
-                        more = (data.z & 1u) == 0u;
-                        if (peelrayMayHit(data, segment)) {
-                            const uint id = data.w >> 2u;
-                            if (id != skip) {
-                                if (PEELRAY_DEFER)
-                                    candidate = id;
-                                else if (peelrayTestTriangle(place, ray, id, true, shear, r, hit))
-                                    found_one = true;
-                            }
-                        }
-                        j++;
-                    }
-                    if (PEELRAY_DEFER && candidate != PEELRAY_MISS && peelrayTestTriangle(place, ray, candidate, true, shear, r, hit)) found_one = true;
-                } while (PEELRAY_DEFER && more && !(options.any_hit && found_one));
+                const PeelraySegment way = PeelraySegment(from_centre + s * r.d, from_centre + min(s_out, r.s_best) * r.d);
+                peelrayTestTriangles(place, ray, skip, options, way, shear, here.j, r, hit, found_one);
             } else {
-                const vec3 from_centre = r.o - (vec3(at) + 0.5);
-                while (more) {
-                    PEELRAY_COUNT(samples);
-                    const uvec2 data = PEELRAY_SAMPLE(j);
-                    bool hits;
-                    float s_hit;
-                    if (options.hit == PEELRAY_TOLERANCE) {
-                        // Word 0: the depth in the cell, a float; word 1: axis (bits 0 and 1), last of its list (bit 31).
-                        const uint axis = data.y & 3u;
-                        const float w = uintBitsToFloat(data.x);
-                        hits = peelrayTestDepth(r, r.tolerance[axis], peelrayToLdi(r.o - vec3(at), axis), peelrayToLdi(r.d, axis),
-                                                peelrayToLdi(r.inv, axis), w, s_hit);
-                    } else {
-                        // The plane's normal along x, y (word 0) and z (low half of word 1): half floats, 1 along its LDI's axis and
-                        // nowhere else; its distance from the cell's centre along that axis (bits 16 to 30: [-2.5, 2.5] voxels); last of
-                        // its list (bit 31).
-                        const vec3 normal = vec3(unpackHalf2x16(data.x), unpackHalf2x16(data.y).x);
-                        const float w = float(data.y >> 16u & 0x7fffu) * (5.0 / 32767.0) - 2.5;
-                        s_hit = (w - dot(normal, from_centre)) / dot(normal, r.d);
-                        // The footprint is one of pixels: along the axis it has no bounds.
-                        const vec3 place_in_cell = abs(from_centre + s_hit * r.d);
-                        hits = s_hit > r.s_min && s_hit <= r.s_best && (place_in_cell.x <= PEELRAY_FOOTPRINT || normal.x == 1.0) &&
-                               (place_in_cell.y <= PEELRAY_FOOTPRINT || normal.y == 1.0) &&
-                               (place_in_cell.z <= PEELRAY_FOOTPRINT || normal.z == 1.0);
-                    }
-                    if (hits) {
-                        const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-                        if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
-                            r.s_best = s_hit;
-                            hit.triangle = id;
-                            found_one = true;
-                        }
-                    }
-                    more = (data.y >> 31u) == 0u;
-                    j++;
-                }
+                peelrayTestSamples(skip, options, at, here.j, r, hit, found_one);
             }
             if (options.any_hit && found_one) break;
         }
-
         if (s_out >= min(r.s_end, r.s_best)) break;
         // Leave through the exit face; the other coordinates come from the position but never step backwards or out of the
         // box.
         s = max(s, s_out);
-        cell = clamp(ivec3(floor(r.o + s * r.d)) ^ mirror, cell, last);
+        cell = clamp(ivec3(floor(r.o + s * r.d)) ^ mirror.flip, cell, here.last);
         if (exits.x <= exits.y && exits.x <= exits.z)
-            cell.x = last.x + 1;
+            cell.x = here.last.x + 1;
         else if (exits.y <= exits.z)
-            cell.y = last.y + 1;
+            cell.y = here.last.y + 1;
         else
-            cell.z = last.z + 1;
+            cell.z = here.last.z + 1;
         if (any(equal(cell, beyond))) break;
     }
     if (found_one) peelrayKeep(r, instance, hit);

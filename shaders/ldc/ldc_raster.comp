@@ -70,72 +70,99 @@ uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace 
     return count;
 }
 
-void main() {
-    const uint id = params.first_triangle + GLOBAL_INDEX;
-    bool valid = GLOBAL_INDEX < params.triangles && LDC_CELLS_FIT(counters[0]);
-    const uint body = valid ? ldcBodyOfTriangle(id) : params.first_body;
-    const LdcPlace place = ldcPlaceOf(body);
-    const CubeGrid grid = place.grid;
-    vec3 a = vec3(0), b = vec3(0), c = vec3(0), normal = vec3(0);
-    if (valid) {
-        const uvec3 indices = triangles[id];
-        a = positions[indices.x];
-        b = positions[indices.y];
-        c = positions[indices.z];
-        if (!(isBounded(a) && isBounded(b) && isBounded(c))) {
-            atomicAdd(counters[0].invalid, 1u);
-            valid = false;
-        } else if (params.sampling != LDC_CONSERVATIVE && missesCentres(grid, a, b, c)) {
-            valid = false;
-        } else {
-            normal = ldcNormal(a, b, c, grid.inv_voxel);
-            if (keeps_corners) corners[id] = ldcPackCorners(grid, a, b, c, normal);
-            if (normal == vec3(0)) {
-                atomicAdd(counters[0].degenerate, 1u);
-                valid = false;
-            }
-        }
+/// A triangle as its thread goes through it, in all LDIs that capture it.
+struct RasterTriangle {
+    uint id;
+    vec3 a, b, c, normal;
+    uint first_axis, last_axis;  ///< only the overlap band has triangles that several LDIs capture
+};
+
+/// False: there is nothing to rasterise.
+bool readTriangle(CubeGrid grid, inout RasterTriangle triangle) {
+    const uvec3 indices = triangles[triangle.id];
+    triangle.a = positions[indices.x];
+    triangle.b = positions[indices.y];
+    triangle.c = positions[indices.z];
+    if (!(isBounded(triangle.a) && isBounded(triangle.b) && isBounded(triangle.c))) {
+        atomicAdd(counters[0].invalid, 1u);
+        return false;
     }
+    if (params.sampling != LDC_CONSERVATIVE && missesCentres(grid, triangle.a, triangle.b, triangle.c)) return false;
+    triangle.normal = ldcNormal(triangle.a, triangle.b, triangle.c, grid.inv_voxel);
+    if (keeps_corners) corners[triangle.id] = ldcPackCorners(grid, triangle.a, triangle.b, triangle.c, triangle.normal);
+    if (triangle.normal == vec3(0)) {
+        atomicAdd(counters[0].degenerate, 1u);
+        return false;
+    }
+    return true;
+}
+
+/// Fragments of a triangle where it is small; where it is large its blocks are queued, or left to the workgroup. `covering`:
+/// the LDIs, a bit each, in which there are fragments.
+uint countSmall(RasterTriangle triangle, LdcPlace place, out uint covering) {
+    uint count = covering = 0u;
+    for (uint axis = triangle.first_axis; axis <= triangle.last_axis; axis++) {
+        if (!ldcCaptured(triangle.normal, axis, params.sampling)) continue;
+        const uint id = triangle.id << 2u | axis;
+        const LdcTriangle t = ldcProject(place.grid, triangle.a, triangle.b, triangle.c, triangle.normal, axis);
+        ivec2 lo, hi;
+        if (!ldcBounds(t, uvec3(peelrayToLdi(vec3(place.grid.dims), axis)).xy, lo, hi)) continue;
+        const ivec2 size = hi - lo + 1;
+        if (uint(size.x) * uint(size.y) > small_pixels) {
+            if (touchesMany(lo, hi))
+                many[atomicAdd(many_count, 1u)] = id;
+            else
+                queueBlocks(t, lo, hi, id, 0u, 1u);
+            continue;
+        }
+        const uint emitted = emitSmall(t, ldcReach(t), lo, hi, id, place, false, 0u);
+        if (emitted != 0u) covering |= 1u << axis;
+        count += emitted;
+    }
+    return count;
+}
+
+void writeSmall(RasterTriangle triangle, LdcPlace place, uint covering, uint position) {
+    for (uint axis = triangle.first_axis; axis <= triangle.last_axis; axis++) {
+        if ((covering >> axis & 1u) == 0u) continue;
+        const LdcTriangle t = ldcProject(place.grid, triangle.a, triangle.b, triangle.c, triangle.normal, axis);
+        ivec2 lo, hi;
+        ldcBounds(t, uvec3(peelrayToLdi(vec3(place.grid.dims), axis)).xy, lo, hi);
+        position += emitSmall(t, ldcReach(t), lo, hi, triangle.id << 2u | axis, place, true, position);
+    }
+}
+
+/// By all threads of the workgroup.
+void cutMany() {
+    for (uint i = 0u; i < many_count; i++) {
+        const uint large = many[i];
+        const CubeGrid grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
+        const LdcTriangle t = ldcProjected(grid, large);
+        ivec2 lo, hi;
+        ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), large & 3u)).xy, lo, hi);
+        queueBlocks(t, lo, hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
+    }
+}
+
+void main() {
+    RasterTriangle triangle;
+    triangle.id = params.first_triangle + GLOBAL_INDEX;
+    triangle.normal = vec3(0);
+    bool valid = GLOBAL_INDEX < params.triangles && LDC_CELLS_FIT(counters[0]);
+    const uint body = valid ? ldcBodyOfTriangle(triangle.id) : params.first_body;
+    const LdcPlace place = ldcPlaceOf(body);
+    if (valid) valid = readTriangle(place.grid, triangle);
     if ((bodies[body].resolution & LDC_BARE) != 0u) valid = false;
     if (gl_LocalInvocationIndex == 0u) many_count = group_valid = 0u;
     barrier();
     if (valid) group_valid = 1u;
     barrier();
     if (group_valid == 0u) return;
-    // Only the overlap band has triangles that several LDIs capture.
-    const uint first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(normal), last_axis = params.sampling == LDC_BAND ? 2u : first_axis;
-    uint count = 0u, covering = 0u;
-    for (uint axis = first_axis; axis <= last_axis; axis++) {
-        if (!valid || !ldcCaptured(normal, axis, params.sampling)) continue;
-        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
-        ivec2 lo, hi;
-        if (!ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi)) continue;
-        const ivec2 size = hi - lo + 1;
-        if (uint(size.x) * uint(size.y) > small_pixels) {
-            if (touchesMany(lo, hi))
-                many[atomicAdd(many_count, 1u)] = id << 2u | axis;
-            else
-                queueBlocks(t, lo, hi, id << 2u | axis, 0u, 1u);
-            continue;
-        }
-        const uint emitted = emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, false, 0u);
-        if (emitted != 0u) covering |= 1u << axis;
-        count += emitted;
-    }
-    uint position = ldcReserve(count);
-    for (uint axis = first_axis; axis <= last_axis; axis++) {
-        if ((covering >> axis & 1u) == 0u) continue;
-        const LdcTriangle t = ldcProject(grid, a, b, c, normal, axis);
-        ivec2 lo, hi;
-        ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), axis)).xy, lo, hi);
-        position += emitSmall(t, ldcReach(t), lo, hi, id << 2u | axis, place, true, position);
-    }
-    for (uint i = 0u; i < many_count; i++) {
-        const uint large = many[i];
-        const CubeGrid its_grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
-        const LdcTriangle its = ldcProjected(its_grid, large);
-        ivec2 lo, hi;
-        ldcBounds(its, uvec3(peelrayToLdi(vec3(its_grid.dims), large & 3u)).xy, lo, hi);
-        queueBlocks(its, lo, hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
-    }
+    triangle.first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(triangle.normal);
+    triangle.last_axis = params.sampling == LDC_BAND ? 2u : triangle.first_axis;
+    uint covering = 0u, count = 0u;
+    if (valid) count = countSmall(triangle, place, covering);
+    const uint position = ldcReserve(count);
+    if (covering != 0u) writeSmall(triangle, place, covering, position);
+    cutMany();
 }

@@ -155,76 +155,99 @@ void countGroups() {
     storeRays(QUEUE_GROUPS_LIGHT, overflow == 0u ? atomicAdd(queue[QUEUE_LIGHT], 0u) : 0u);
 }
 
+/// What a thread knows of its hit, from shading it until the workgroup has room for its rays.
+struct Scattering {
+    Surface surface;
+    SurfaceId from;
+    PathNode node;
+    Branch reflection, refraction;
+    uint reflection_slot, refraction_slot, light_slot;  ///< among the rays of the workgroup
+    uint light_rays;
+    vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
+    vec3 path_weight;  ///< of the path up to here
+};
+
+/// The ray that thread `i` follows and what it hit; false: none.
+bool startOf(uint i, out Ray ray, out RayState state, out Hit hit) {
+    if (camera) {
+        const uvec2 pixel = recordPixel(i, params.first_row);
+        if (i >= params.capacity || pixel.x >= frame[0].width || pixel.y >= frame[0].height) return false;
+        cameraStart(pixel, params.jitter, by_number, ray, state, hit);
+        return true;
+    }
+    if (i >= min(params.capacity, queue[params.level])) return false;
+    ray = rays[i];
+    state = states[i];
+    hit = hits[i];
+    return true;
+}
+
+/// Shades what was hit, and counts the rays that it needs for the workgroup.
+void shadeHit(Ray ray, Hit hit, inout RayState state, inout Scattering c) {
+    c.node.flags = NODE_SURFACE;
+    c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
+    c.lost = transmittance(state.medium, hit.t);
+    state.weight *= c.lost;
+    c.path_weight = state.weight;
+    c.node.radiance = scatterSurface(c.surface, ray.direction, state, c.reflection, c.refraction);
+    // What is not traced sees the environment.
+    if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
+    if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, 0.0);
+    uint sky_rays = 0u;
+    if ((materials[c.surface.material].flags & MATERIAL_UNLIT) == 0u)
+        c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.light_rays, sky_rays);
+    c.node.radiance *= c.lost;
+    if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
+    if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);
+    if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
+    if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
+}
+
+/// Puts the next level's rays into the room that reserve() made.
+void emitBranches(uint i, Scattering c, uint seed) {
+    PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
+    if (c.reflection.traced) {
+        children.child0 = group_first + c.reflection_slot;
+        emitRay(children.child0, c.reflection, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 0u, params.level)).x);
+    }
+    if (c.refraction.traced) {
+        children.child1 = group_first + group_counts[0] + c.refraction_slot;
+        emitRay(children.child1, c.refraction, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+    }
+    branches[i] = children;
+}
+
 void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
     if (lane < 4u) group_counts[lane] = 0u;
     barrier();
-    bool valid = camera ? i < params.capacity : i < min(params.capacity, queue[params.level]);
     Ray ray;
     RayState state;
     Hit hit;
-    if (camera) {
-        const uvec2 pixel = recordPixel(i, params.first_row);
-        valid = valid && pixel.x < frame[0].width && pixel.y < frame[0].height;
-        if (valid) cameraStart(pixel, params.jitter, by_number, ray, state, hit);
-    } else if (valid) {
-        ray = rays[i];
-        state = states[i];
-        hit = hits[i];
-    }
-    PathNode node = PathNode(vec3(0), 0u, 0u);
-    Branch reflection = NO_BRANCH, refraction = NO_BRANCH;
-    Surface s;
-    SurfaceId from = SurfaceId(0u, NO_TRIANGLE);
-    uint slot0 = 0u, slot1 = 0u, light_slot = 0u, light_rays = 0u;
-    vec3 lost = vec3(1), path_weight = vec3(0);
-    if (valid) {
-        from = SurfaceId(hit.instance, hit.triangle);
-        if (hit.triangle == NO_TRIANGLE) {
-            node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
-        } else {
-            node.flags = NODE_SURFACE;
-            s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
-            lost = transmittance(state.medium, hit.t);
-            state.weight *= lost;
-            path_weight = state.weight;
-            node.radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
-            // What is not traced sees the environment.
-            if (!reflection.traced) node.radiance += reflection.weight * environmentRadiance(reflection.direction, reflection.blur);
-            if (!refraction.traced) node.radiance += refraction.weight * environmentRadiance(refraction.direction, 0.0);
-            uint sky_rays = 0u;
-            if ((materials[s.material].flags & MATERIAL_UNLIT) == 0u)
-                node.radiance += unshadowedLight(s, materials[s.material], -ray.direction, light_rays, sky_rays);
-            node.radiance *= lost;
-            if (reflection.traced) slot0 = atomicAdd(group_counts[0], 1u);
-            if (refraction.traced) slot1 = atomicAdd(group_counts[1], 1u);
-            if (light_rays > 0u) light_slot = atomicAdd(group_counts[2], light_rays);
-            if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
-        }
+    const bool valid = startOf(i, ray, state, hit);
+    Scattering c;
+    c.node = PathNode(vec3(0), 0u, 0u);
+    c.reflection = c.refraction = NO_BRANCH;
+    c.light_rays = 0u;
+    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+    if (valid && hit.triangle != NO_TRIANGLE) {
+        c.from = SurfaceId(hit.instance, hit.triangle);
+        shadeHit(ray, hit, state, c);
     }
     barrier();
     if (lane == 0u) reserve();
     barrier();
     if (valid) {
-        if (reflection.traced || refraction.traced) {
-            node.flags |= NODE_BRANCHES;
-            PathBranches children = PathBranches(reflection.weight * lost, NO_CHILD, refraction.weight * lost, NO_CHILD);
-            if (reflection.traced) {
-                children.child0 = group_first + slot0;
-                emitRay(children.child0, reflection, s, from, path_weight, hash3(uvec3(state.seed, 0u, params.level)).x);
-            }
-            if (refraction.traced) {
-                children.child1 = group_first + group_counts[0] + slot1;
-                emitRay(children.child1, refraction, s, from, path_weight, hash3(uvec3(state.seed, 1u, params.level)).x);
-            }
-            branches[i] = children;
+        if (c.reflection.traced || c.refraction.traced) {
+            c.node.flags |= NODE_BRANCHES;
+            emitBranches(i, c, state.seed);
         }
-        if (light_rays > 0u) {
-            node.first_light = group_first_light + light_slot;
-            node.flags |= light_rays;
-            emitLights(node.first_light, s, materials[s.material], -ray.direction, lost, from, state.seed);
+        if (c.light_rays > 0u) {
+            c.node.first_light = group_first_light + c.light_slot;
+            c.node.flags |= c.light_rays;
+            emitLights(c.node.first_light, c.surface, materials[c.surface.material], -ray.direction, c.lost, c.from, state.seed);
         }
-        nodes[i] = node;
+        nodes[i] = c.node;
     }
     if (lane == 0u && isLastGroup()) countGroups();
 }
