@@ -252,7 +252,8 @@ void RayBench::measure_ways(MeasuredScene& scene, const RayRow& row, const std::
     for (const Way& way : ways) {
         RayRow ours = row;
         ours.contender = name_of(way.hit);
-        ours.traversal = name_of(way.traversal);
+        ours.hit = way.hit;
+        ours.traversal = way.traversal;
         ours.ldc = way.ldc;
         measure(ours, [&](RayRow& r) { scene.measure_ours(way, !row.series, r); });
     }

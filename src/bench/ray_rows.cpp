@@ -20,7 +20,8 @@ std::optional<double> RayRow::dynamic_ms() const {
 std::string RayRow::label() const {
     if (!is_ours()) return contender;
     const std::string n = ldc ? fmt::format("{}", *ldc) : "auto";
-    return traversal == "voxel" ? fmt::format("{} {}", contender, n) : fmt::format("{} {} {}", contender, traversal, n);
+    return traversal == Traversal::voxel ? fmt::format("{} {}", contender, n)
+                                         : fmt::format("{} {} {}", contender, name_of(traversal), n);
 }
 
 }  // namespace peelray

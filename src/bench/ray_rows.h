@@ -28,18 +28,19 @@ struct RayRow {
     bool stands_in = false;
     uint64_t triangles = 0;  ///< 0: unknown
     glm::uvec2 size{0};
-    std::string contender;        ///< exact or planar (ours), khr, Embree
-    std::string traversal;        ///< of ours
-    std::optional<uint32_t> ldc;  ///< of ours: as asked for; none: auto
-    uint32_t resolution = 0;      ///< of ours: voxels along the largest cube
-    bool series = false;          ///< of the series of picture sizes
-    std::string left_out;         ///< why, as Error::text(); empty: it was measured
-    Timing build, refit, frame;   ///< without runs: not measured
-    std::string frame_left_out;   ///< the same of the frame, if it was tried
-    std::vector<TracedSet> sets;  ///< in the order of --rays
+    std::string contender;                   ///< what it is called: exact or planar (ours), khr, Embree
+    std::optional<HitTest> hit;              ///< of ours; none: a rival
+    Traversal traversal = Traversal::voxel;  ///< of ours
+    std::optional<uint32_t> ldc;             ///< of ours: as asked for; none: auto
+    uint32_t resolution = 0;                 ///< of ours: voxels along the largest cube
+    bool series = false;                     ///< of the series of picture sizes
+    std::string left_out;                    ///< why, as Error::text(); empty: it was measured
+    Timing build, refit, frame;              ///< without runs: not measured
+    std::string frame_left_out;              ///< the same of the frame, if it was tried
+    std::vector<TracedSet> sets;             ///< in the order of --rays
     MemoryUse memory;
 
-    bool is_ours() const { return contender == "exact" || contender == "planar"; }
+    bool is_ours() const { return hit.has_value(); }
     const TracedSet* set(RayKind kind) const;
     /// Everything rebuilt, mirror and shadow rays, milliseconds; none: not all of it was measured and right.
     std::optional<double> dynamic_ms() const;

@@ -66,7 +66,7 @@ void write_plots(const std::filesystem::path& folder, const std::vector<RayRow>&
         });
     const auto scene_and_hit = [](const RayRow& row) { return row.scene + ", " + row.contender; };
     const auto resolution = [](const RayRow& row) {
-        return is_blob(row) && row.is_ours() && row.ldc && !row.series && row.traversal == "voxel"
+        return is_blob(row) && row.is_ours() && row.ldc && !row.series && row.traversal == Traversal::voxel
                    ? Value(double(*row.ldc))
                    : std::nullopt;
     };

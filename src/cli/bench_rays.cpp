@@ -45,8 +45,8 @@ Json ray_row_json(const RayRow& row) {
                  {"image", {row.size.x, row.size.y}},
                  {"series", row.series ? Json("rays") : Json(nullptr)},
                  {"contender", row.is_ours() ? "ldc" : row.contender},
-                 {"hit", row.is_ours() ? Json(row.contender) : Json(nullptr)},
-                 {"traversal", row.is_ours() ? Json(row.traversal) : Json(nullptr)},
+                 {"hit", row.hit ? Json(name_of(*row.hit)) : Json(nullptr)},
+                 {"traversal", row.is_ours() ? Json(name_of(row.traversal)) : Json(nullptr)},
                  {"ldc", !row.is_ours() ? Json(nullptr)
                          : row.ldc      ? Json(*row.ldc)
                                         : Json("auto")},

@@ -19,7 +19,7 @@ RayRow row_of(const std::string& contender, double build_ms, double mirror_ms, d
     row.triangles = 8002;
     row.size = {1280, 1024};
     row.contender = contender;
-    row.traversal = "voxel";
+    row.hit = value_named<HitTest>(contender);
     row.build = timing_of({build_ms});
     row.sets = {traced(RayKind::mirror, mirror_ms), traced(RayKind::shadow, shadow_ms)};
     return row;
