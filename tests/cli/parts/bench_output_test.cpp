@@ -112,7 +112,7 @@ TEST_F(BenchOutputTest, PlotsAreDrawnOfWhatThereIs) {
     row.scene = "blob:500";
     row.triangles = 502;
     row.contender = "exact";
-    row.traversal = "voxel";
+    row.traversal = Traversal::voxel;
     row.build = {1, 5, 5, 5};
     write_plots(folder, {});
     EXPECT_EQ(files(), 0u);
