@@ -74,7 +74,13 @@ TEST_F(BadInput, GltfBuffersAndImages) {
     gltf["textures"] = {{{"source", 0}}};
     gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     gltf["meshes"][0]["primitives"][0]["material"] = 0;
-    expect_bad_gltf(gltf, "gone.png");
+    put("square.bin", square_bytes());
+    put("noted.gltf", gltf.dump());
+    const Outcome noted = render(in("noted.gltf"));
+    expect_done(noted, {"a.png"});
+    EXPECT_NE(noted.err.find("the image file gone.png is missing: the factors are used"), std::string::npos)
+        << noted.err;
+    std::filesystem::remove(out("a.png"));
     put("short.png", "\x89PNG\r\n\x1a\n");
     gltf["images"][0]["uri"] = "short.png";
     expect_bad_gltf(gltf, "short.png");
