@@ -13,19 +13,26 @@ namespace peelray {
 
 namespace fs = std::filesystem;
 
-Bytes read_file(const fs::path& path, const std::string& where) {
+std::ifstream open_file(const fs::path& path, uint64_t& size, const std::string& where) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     const std::string name = (where.empty() ? "" : where + ": ") + printable(path.string(), 1000);
     if (!fs::exists(status)) fail("{}: no such file; check the path", name);
     if (!fs::is_regular_file(status)) fail("{}: not a regular file; check the path", name);
-    const uintmax_t size = fs::file_size(path, error);
+    size = fs::file_size(path, error);
     std::ifstream stream(path, std::ios::binary);
     if (error || !stream) fail("{}: cannot be read; check its permissions", name);
+    return stream;
+}
+
+Bytes read_file(const fs::path& path, const std::string& where) {
+    uint64_t size = 0;
+    std::ifstream stream = open_file(path, size, where);
     Bytes bytes(size);
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (static_cast<uintmax_t>(stream.gcount()) != size)
-        fail("{}: only {} of {} bytes could be read", name, stream.gcount(), size);
+    if (static_cast<uint64_t>(stream.gcount()) != size)
+        fail("{}{}{}: only {} of {} bytes could be read", where, where.empty() ? "" : ": ",
+             printable(path.string(), 1000), stream.gcount(), size);
     return bytes;
 }
 

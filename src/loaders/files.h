@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +13,11 @@ namespace peelray {
 
 using Bytes = std::vector<uint8_t>;
 
-/// The whole file. Throws Error when it is missing, not a regular file, or unreadable; `where` says who asked for it.
+/// Opens a file and says how many bytes it has. Throws Error when it is missing, not a regular file, or unreadable;
+/// `where` says who asked for it.
+std::ifstream open_file(const std::filesystem::path& path, uint64_t& size, const std::string& where = "");
+
+/// The whole file. Throws Error as open_file() does.
 Bytes read_file(const std::filesystem::path& path, const std::string& where = "");
 
 /// Adds a file to those that were read, unless it is there already.

@@ -7,10 +7,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "loaders/assimp_loader.h"
 #include "loaders/files.h"
 #include "loaders/gltf.h"
 #include "loaders/obj.h"
+#include "loaders/off.h"
+#include "loaders/ply.h"
+#include "loaders/stl.h"
 
 namespace peelray {
 
@@ -20,7 +22,9 @@ Scene load_file(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
     if (extension == ".obj") return load_obj(path);
-    if (extension == ".ply" || extension == ".stl" || extension == ".off") return load_assimp(path, extension);
+    if (extension == ".ply") return load_ply(path);
+    if (extension == ".stl") return load_stl(path);
+    if (extension == ".off") return load_off(path);
     fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
          printable(path.string(), 1000), printable(extension, 20));
 }

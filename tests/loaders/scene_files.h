@@ -115,6 +115,13 @@ inline std::string error_of(const TempFolder& folder, const json& gltf) {
     return error_of(folder.write("scene.gltf", gltf.dump()));
 }
 
+/// All notes of a scene, one a line.
+inline std::string notes_of(const Scene& scene) {
+    std::string out;
+    for (const std::string& note : scene.notes) out += note + "\n";
+    return out;
+}
+
 #define EXPECT_MENTIONS(line, word) EXPECT_NE((line).find(word), std::string::npos) << (line)
 
 /// A 2×1 PNG image: red, green.
