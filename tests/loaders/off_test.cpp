@@ -15,7 +15,7 @@ Geometry off_geometry(const TempFolder& folder, const std::string& text) {
 }
 
 std::string off_notes(const TempFolder& folder, const std::string& text) {
-    return notes_of(load_scene(folder.write("a.off", text)));
+    return all_notes(load_scene(folder.write("a.off", text)));
 }
 
 TEST(OffFile, CountsAndCommentsAnywhere) {

@@ -113,7 +113,7 @@ TEST(PlyFile, ColorsByTheirManyNames) {
     const Scene scene =
         load_scene(folder.write("b.ply", triangle_with("property uchar red\nproperty uchar green\n", "1 2")));
     EXPECT_TRUE(flatten(scene).colors.empty());
-    EXPECT_MENTIONS(notes_of(scene), "vertex red, vertex green");
+    EXPECT_MENTIONS(all_notes(scene), "vertex red, vertex green");
 }
 
 TEST(PlyFile, ColorsOfFaces) {
@@ -135,7 +135,7 @@ TEST(PlyFile, ColorsOfFaces) {
                       "element face 1\n" + face_colors + ply_list,
                   "0 0 0 0 0 255\n1 0 0 0 0 255\n0 1 0 0 0 255\n9 8 7 3 0 1 2\n")));
     EXPECT_EQ(flatten(both).colors[0], glm::vec4(0, 0, 1, 1));
-    EXPECT_MENTIONS(notes_of(both), "the colours of faces have no effect");
+    EXPECT_MENTIONS(all_notes(both), "the colours of faces have no effect");
     // MeshLab's colours of corners.
     const Geometry corners = ply_geometry(
         folder,
@@ -174,8 +174,8 @@ TEST(PlyFile, SeveralTexturesByNumber) {
     EXPECT_EQ(scene.materials.at(g.materials[1]).name, "gone.png");
     EXPECT_EQ(scene.materials.at(g.materials[1]).base_color_texture, -1);
     EXPECT_EQ(g.materials[2], 0u);
-    EXPECT_MENTIONS(notes_of(scene), "gone.png");
-    EXPECT_MENTIONS(notes_of(scene), "1 faces name a texture that the file does not have");
+    EXPECT_MENTIONS(all_notes(scene), "gone.png");
+    EXPECT_MENTIONS(all_notes(scene), "1 faces name a texture that the file does not have");
 }
 
 TEST(PlyFile, NormalsAndTextureCoordinatesOfVertices) {
@@ -199,8 +199,8 @@ TEST(PlyFile, WhatHasNoEffectIsNoted) {
                                ply_list + "property int flags\n",
                            "7\n0 0 0 0.5 2 1 2\n1 0 0 0.5 0\n0 1 0 0.5 1 3\n3 0 1 2 4\nand more\n")));
     EXPECT_EQ(flatten(scene).triangles.size(), 1u);
-    EXPECT_MENTIONS(notes_of(scene), "element camera (1), vertex confidence, vertex weights, face flags");
-    EXPECT_MENTIONS(notes_of(scene), "line 20");
+    EXPECT_MENTIONS(all_notes(scene), "element camera (1), vertex confidence, vertex weights, face flags");
+    EXPECT_MENTIONS(all_notes(scene), "line 20");
 }
 
 TEST(PlyFile, LineEndsOfAllSystems) {

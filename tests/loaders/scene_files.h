@@ -116,7 +116,7 @@ inline std::string error_of(const TempFolder& folder, const json& gltf) {
 }
 
 /// All notes of a scene, one a line.
-inline std::string notes_of(const Scene& scene) {
+inline std::string all_notes(const Scene& scene) {
     std::string out;
     for (const std::string& note : scene.notes) out += note + "\n";
     return out;

@@ -46,7 +46,7 @@ TEST(StlFile, SolidsAreObjects) {
     EXPECT_EQ(scene.meshes[0].primitives[0].triangles.size(), 2u);
     EXPECT_TRUE(scene.notes.empty());
     const Scene open = load_scene(folder.write("b.stl", "solid a\n" + body));
-    EXPECT_MENTIONS(notes_of(open), "without \"endsolid\"");
+    EXPECT_MENTIONS(all_notes(open), "without \"endsolid\"");
     // Some write polygons.
     const Scene square =
         load_scene(folder.write("c.stl", "solid a\n" + body +
@@ -73,7 +73,7 @@ TEST(StlFile, WrongCounts) {
                     "claims 4000000000 facets, holds 1");
     const Scene more = load_scene(folder.write("c.stl", binary_stl("x", facet_at(0) + "tail", 1)));
     EXPECT_EQ(flatten(more).triangles.size(), 1u);
-    EXPECT_MENTIONS(notes_of(more), "4 bytes after the last of 1 facets");
+    EXPECT_MENTIONS(all_notes(more), "4 bytes after the last of 1 facets");
 }
 
 glm::vec4 facet_color(const Geometry& g, const Scene& scene, size_t triangle) {
@@ -102,7 +102,7 @@ TEST(StlFile, ColorsOfMagics) {
         "c.stl", binary_stl(orange + std::string(",MATERIAL=\x00\x00\xFF\xFF\x01\x02\x03\xFF\x01\x02\x03\xFF", 22),
                             facet_at(0, 0x8000), 1)));
     EXPECT_EQ(facet_color(flatten(material), material, 0), glm::vec4(0, 0, 1, 1));
-    EXPECT_MENTIONS(notes_of(material), "specular");
+    EXPECT_MENTIONS(all_notes(material), "specular");
 }
 
 TEST(StlFile, ColorsOfVisCam) {
@@ -114,7 +114,7 @@ TEST(StlFile, ColorsOfVisCam) {
     EXPECT_EQ(facet_color(g, scene, 0), glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(facet_color(g, scene, 1), glm::vec4(0, 0, 1, 1));
     EXPECT_EQ(facet_color(g, scene, 2), glm::vec4(1));
-    EXPECT_MENTIONS(notes_of(scene), "1 facets have attributes that are no colours");
+    EXPECT_MENTIONS(all_notes(scene), "1 facets have attributes that are no colours");
 }
 
 TEST(StlFile, Bad) {
