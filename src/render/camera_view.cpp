@@ -1,5 +1,7 @@
 #include "render/camera_view.h"
 
+#include "view/view_params.h"
+
 namespace peelray {
 
 void CameraView::prepare(const GpuScene& scene, const RenderSettings& settings) {

@@ -298,12 +298,13 @@ TEST(Assembly, OfModelsIsTheScene) {
             const std::string which = scene.animations.empty() ? "" : "all";
             const Assembly assembly = assemble(scene, at_rest(scene), motion_of(scene, which));
             expect_ordered(assembly);
-            for (const double time : {0.0, 0.4, 1.1}) {
+            // What is not animated looks alike in every moment.
+            const std::vector<double> times =
+                which.empty() ? std::vector<double>{0.0} : std::vector<double>{0.0, 0.4, 1.1};
+            for (const double time : times) {
                 const Moment moment = moment_of(scene, which, time);
                 const Geometry geometry = flatten(scene, moment);
-                // At rest nothing deforms; moved, what does is compared elsewhere.
-                const Assembly now = which.empty() ? assembly : Assembly(assembly);
-                expect_whole(scene, moment, now, 1e-5 * glm::length(geometry.upper - geometry.lower) + 1e-6);
+                expect_whole(scene, moment, assembly, 1e-5 * glm::length(geometry.upper - geometry.lower) + 1e-6);
                 if (::testing::Test::HasFatalFailure()) return;
             }
             compared++;
