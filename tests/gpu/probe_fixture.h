@@ -2,6 +2,11 @@
 #pragma once
 
 #include <random>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <glm/glm.hpp>
 
 #include "gpu/device_fixture.h"
 #include "gpu/shader_table.h"
