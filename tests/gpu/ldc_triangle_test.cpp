@@ -1,5 +1,6 @@
 // A triangle as an LDI sees it: normal, axis, projection, coverage, depth range and packing, against double precision.
 #include "exact_clip.h"
+#include "ldc/cubes.h"
 #include "probe_fixture.h"
 #include "sample_plane.h"
 
