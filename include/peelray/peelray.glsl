@@ -26,6 +26,9 @@
 //                     one where every lane runs every branch (software devices)
 //   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
 //                     other samples are made where there is a surface)
+//   bool PEELRAY_SHOWN(uint triangle, bool front)   false: the triangle is not there for a ray that meets this side of it; front: that from
+//                     which its corners go counter-clockwise in the body's space. Asked by every hit test, of samples by PEELRAY_TRIANGLE.
+//                     A macro that looks at `front` last costs nothing where all triangles show both sides.
 //
 // By voxel: peelray_voxels.glsl, by pixel: peelray_pixels.glsl. The instances are leaves of a hierarchy of eight boxes a node, in the
 // order of a space-filling curve (Kamel, Faloutsos, CIKM 1993), visited nearest first.
@@ -175,6 +178,25 @@ bool peelrayNearer(PeelrayLocal r, float s_hit, uint id, PeelrayHit hit) {
     return s_hit > r.s_min && (s_hit < r.s_best || (s_hit == r.s_best && hit.triangle != PEELRAY_MISS && id < hit.triangle));
 }
 
+/// Does a ray along `direction` come from the front of the triangle, whence its corners go counter-clockwise?
+bool peelrayFront(vec3 direction, vec3 a, vec3 b, vec3 c) { return dot(cross(b - a, c - a), direction) < 0.0; }
+
+/// The same of a triangle by number; a direction in its body's space.
+bool peelrayFrontOf(vec3 direction, uint id) {
+    vec3 a, b, c;
+    PEELRAY_TRIANGLE(id, a, b, c);
+    return peelrayFront(direction, a, b, c);
+}
+
+/// A hit of a sample: is its triangle there for the ray?
+bool peelraySampleShown(vec3 direction, uint id) {
+#ifdef PEELRAY_SHOWN
+    return PEELRAY_SHOWN(id, peelrayFrontOf(direction, id));
+#else
+    return true;
+#endif
+}
+
 /// `exact`: does the ray hit this triangle nearer than what it has hit so far? Then that is in `r` and `hit`.
 /// `from_grid`, a constant: its corners are there as PEELRAY_CORNERS.
 bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, bool from_grid, PeelrayShear shear, inout PeelrayLocal r,
@@ -208,6 +230,9 @@ bool peelrayTestTriangle(PeelrayInstance place, PeelrayRay ray, uint id, bool fr
     }
 #endif
     if ((found & PEELRAY_INSIDE) == 0u || !peelrayNearer(r, s_hit, id, hit)) return false;
+#ifdef PEELRAY_SHOWN
+    if (!PEELRAY_SHOWN(id, peelrayFront(r.d, a, b, c))) return false;
+#endif
 #ifdef PEELRAY_ACCEPT
     if (!PEELRAY_ACCEPT(id, uv)) return false;
 #endif

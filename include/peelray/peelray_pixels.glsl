@@ -29,7 +29,7 @@ bool peelrayTestSample(PeelrayInstance place, PeelrayRay ray, uint skip, Peelray
         if (high < floor(w - extent) || low > floor(w + extent) + 1.0) return false;
     }
     const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-    if (id == skip || !peelrayNearer(r, s_hit, id, hit)) return false;
+    if (id == skip || !peelrayNearer(r, s_hit, id, hit) || !peelraySampleShown(r.d, id)) return false;
     r.s_best = s_hit;
     hit.triangle = id;
     return true;

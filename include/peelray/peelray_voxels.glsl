@@ -136,7 +136,7 @@ void peelrayTestSamples(uint skip, PeelrayOptions options, uvec3 at, uint j, ino
         float s_hit;
         if (options.hit == PEELRAY_TOLERANCE ? peelrayHitsDepth(data, r, at, s_hit) : peelrayHitsPlane(data, r, from_centre, s_hit)) {
             const uint id = PEELRAY_SAMPLE_ID(j) >> 2u;
-            if (id != skip && peelrayNearer(r, s_hit, id, hit)) {
+            if (id != skip && peelrayNearer(r, s_hit, id, hit) && peelraySampleShown(r.d, id)) {
                 r.s_best = s_hit;
                 hit.triangle = id;
                 found_one = true;

@@ -25,7 +25,8 @@ struct GpuMaterial {
 SHARED_SIZE(GpuMaterial, 72);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
-#define MATERIAL_COLORED 4u  // vertices have colours
+#define MATERIAL_COLORED 4u       // vertices have colours
+#define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
 
 struct GpuTexture {
     uint offset;  ///< first texel in the texel buffer

@@ -17,10 +17,15 @@ BUFFER(readonly, 11, GpuObject, objects)
 layout(location = 0) flat out uvec2 surface;  // a SurfaceId
 #include "common/placed.glsl"
 #include "common/project.glsl"
+#include "common/sidedness.glsl"
+#include "view/view_side.glsl"
+layout(constant_id = 0) const bool single_sided = false;  // the scene has single-sided materials
 
 bool drawn(vec3 a, vec3 b, vec3 c) {
     const GpuMaterial m = materials[triangle_materials[surface.y]];
     const bool transmits = m.transmission > 0.0 && m.metallic < 1.0;
+    const bool back = viewSeesBack(a, b, c, surface.x);
+    if (single_sided && back && singleSided(surface.y)) return false;
     if (params.shadow != 0u) return !transmits;
     const uint index = instances[surface.x].info.first_object + triangle_objects[surface.y];
     const GpuObject object = objects[index];
@@ -28,7 +33,6 @@ bool drawn(vec3 a, vec3 b, vec3 c) {
     // front faces count. Of all others both sides do, since an open sheet has no back; so they do where the back can be
     // looked through.
     const bool inside = all(greaterThanEqual(frame[0].eye, object.lower)) && all(lessThanEqual(frame[0].eye, object.upper));
-    const bool back = dot(cross(b - a, c - a), a) >= 0.0 != (instances[surface.x].mirrored != 0u);
     return index != params.left_out && (transmits || !inside || !back);
 }
 

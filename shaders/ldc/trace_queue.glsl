@@ -8,6 +8,7 @@ layout(constant_id = 2) const bool precise_edges = false;
 layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 4) const bool masked = false;  // the scene has masked materials
 layout(constant_id = 5) const bool counting = false;
+layout(constant_id = 10) const bool single_sided = false;  // the scene has single-sided materials
 layout(constant_id = 8) const bool deferred = false;  // triangles are tested after their list's samples
 PARAMS(TraceParams)
 #include "ldc/cube_fetch.glsl"
@@ -17,12 +18,11 @@ BUFFER(readonly, 12, uint, queue)
 BUFFER(writeonly, 13, Hit, hits)
 #define BASE_COLOR_FIRST_BINDING 14
 #include "common/base_color_buffers.glsl"
-#include "common/alpha_test.glsl"
+#include "ldc/hit_hooks.glsl"
 #define COUNT_FIRST_BINDING 20
 #include "common/counting.glsl"
 #define PEELRAY_PRECISE precise_edges
 #define PEELRAY_DEFER deferred
-#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
 #include "peelray/peelray.glsl"
 
 /// Rays in the queue.

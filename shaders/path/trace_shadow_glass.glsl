@@ -8,8 +8,8 @@ PARAMS(TraceParams)
 #include "ldc/cube_fetch.glsl"
 #define SCENE_FIRST_BINDING 14
 #include "path/scene_buffers.glsl"
-#include "common/alpha_test.glsl"
-#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
+#define HITS_TO_LIGHT
+#include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
 #include "path/frame.glsl"
 #define SHADOW_FIRST_BINDING 10

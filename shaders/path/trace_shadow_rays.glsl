@@ -7,8 +7,8 @@ PARAMS(TraceParams)
 #include "ldc/cube_fetch.glsl"
 #define BASE_COLOR_FIRST_BINDING 14
 #include "common/base_color_buffers.glsl"
-#include "common/alpha_test.glsl"
-#define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))
+#define HITS_TO_LIGHT
+#include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
 #define SHADOW_FIRST_BINDING 10
 #include "path/trace_shadow.glsl"

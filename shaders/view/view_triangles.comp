@@ -8,6 +8,9 @@ layout(local_size_x = 256) in;
 #include "view/view.glsl"
 #include "common/bounds.glsl"
 #include "common/last_group.glsl"
+#include "common/sidedness.glsl"
+#include "view/view_side.glsl"
+layout(constant_id = 1) const bool single_sided = false;  // the scene has single-sided materials
 
 /// Triangles whose box holds more pixels are queued.
 const uint VIEW_SMALL_PIXELS = 24u;
@@ -84,6 +87,7 @@ void main() {
         const vec3 p = viewPoint(a), q = viewPoint(b), r = viewPoint(c);
         if (isBounded(p) && isBounded(q) && isBounded(r) && !viewMisses(p, q, r)) viewBounds(p, q, r, lo, hi);
         edges = viewEdges(p, q, r);
+        if (single_sided && viewSeesBack(a, b, c, surface.instance) && singleSided(surface.triangle)) hi = lo - 1;
     }
     const ivec2 size = max(hi - lo + 1, ivec2(0));
     if (uint(size.x) * uint(size.y) > VIEW_SMALL_PIXELS) {

@@ -130,6 +130,7 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchSettings& a, const st
     p.size = a.size;
     p.device = a.device;
     p.rebuild = true;
+    p.double_sided = true;
     p.tracing.block = a.block;
     p.tracing.routing = a.routing;
     p.floor = file.has_value();

@@ -9,6 +9,7 @@
 #include "loaders/files.h"
 #include "loaders/load.h"
 #include "scene/scene.h"
+#include "scene/sidedness.h"
 
 namespace peelray {
 namespace {
@@ -34,6 +35,7 @@ std::string describe(const Material& m) {
         text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior,
                             m.thickness > 0 ? "volume" : "thin wall");
     if (m.unlit) text += ", unlit";
+    if (is_single_sided(m)) text += ", front only";
     return text;
 }
 

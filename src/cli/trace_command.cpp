@@ -12,6 +12,7 @@
 #include "image/npy.h"
 #include "loaders/load.h"
 #include "render/ray_scene.h"
+#include "scene/sidedness.h"
 #include "workspace/posed_scene.h"
 #include "workspace/render_settings.h"
 
@@ -114,7 +115,8 @@ void run_trace(const TraceArguments& a) {
         if (!more.empty()) outputs.push_back(more);
     check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
-    const Scene scene = load_scene(a.scene);
+    Scene scene = load_scene(a.scene);
+    if (a.double_sided) show_both_sides(scene);
     const Moment rest = at_rest(scene);
     const Geometry geometry = flatten(scene, rest);
     check_visible(geometry, scene, false, print_note);

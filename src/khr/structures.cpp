@@ -56,7 +56,7 @@ void Structures::create_bodies(const TriangleBuffers& triangles, const std::vect
         Body& body = bodies_.emplace_back();
         for (const StructurePart& part : from.parts) {
             body.source.add_triangles(triangles.positions, triangles.triangles, part.first_triangle, part.triangles,
-                                      from.last_vertex, !part.masked);
+                                      from.last_vertex, part.opaque);
             firsts.push_back(part.first_triangle);
         }
         body.update = from.update;

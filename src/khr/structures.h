@@ -1,7 +1,7 @@
 // The acceleration structures of a scene: one for each body, and one of the instances that place them in the world.
 // Built as NVIDIA recommends ("Best Practices for Using NVIDIA RTX Ray Tracing", 2022): what stays is built for fast
 // traces and compacted; what changes is built for fast builds, or refitted, all of it in one call; the structure of the
-// instances is built anew, for fast traces, whenever something moves; triangles without holes are opaque.
+// instances is built anew, for fast traces, whenever something moves; what shows both sides and has no holes is opaque.
 #pragma once
 
 #include <functional>
@@ -22,10 +22,10 @@ enum class StructureUpdate : uint8_t {
 /// As the stats call them.
 const char* name_of(StructureUpdate update);
 
-/// Triangles of a body in a row, of which all or none may have holes.
+/// Triangles of a body in a row, of which all or none are opaque: without holes, and the same from both sides.
 struct StructurePart {
     uint32_t first_triangle, triangles;
-    bool masked;
+    bool opaque;
 };
 
 /// A body whose triangles get a structure of their own.

@@ -13,12 +13,14 @@ void record_khr_trace(Commands& commands, Device& device, const Structures& stru
 
 /// The shaders of rays that start in a pass of `shader`s kind: what hits mean is decided there.
 enum class KhrRays : uint8_t {
-    nearest,   ///< look for the nearest hit, or for some
-    occluded,  ///< ask whether there is anything
+    nearest,           ///< look for the nearest hit, or for some
+    nearest_to_light,  ///< the same, from a surface to a light
+    occluded,          ///< ask whether there is anything between a surface and a light
 };
 
 /// The pass NAME.rgen for these rays. `constants`: its own, beside those of the shaders of hits.
-const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, bool masked, Constants constants = {});
+const RayPass& khr_pass(Device& device, std::string_view shader, KhrRays rays, const TriangleBuffers& triangles,
+                        Constants constants = {});
 
 /// `bindings`, and the structures.
 std::vector<Binding> khr_bindings(const Structures& structures, std::span<const Binding> bindings);

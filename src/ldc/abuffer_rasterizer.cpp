@@ -31,8 +31,8 @@ void AbufferRasterizer::record(Commands& commands, const BuildState& state, cons
     targets.width = targets.height = side_;
     targets.viewport = p.viewport;
     const char* pass = state.device.features.fragment_subgroups ? "ldc_abuffer" : "ldc_abuffer_plain";
-    commands.draw(state.device.raster_pass(pass, with_alpha_test(routed_.setup, state, triangles)),
-                  with_alpha_test(bindings, triangles), p, std::span(&range, 1), targets);
+    commands.draw(state.device.raster_pass(pass, with_hit_materials(routed_.setup, state, triangles)),
+                  with_hit_materials(bindings, triangles), p, std::span(&range, 1), targets);
 }
 
 }  // namespace peelray

@@ -10,10 +10,10 @@ std::vector<Binding> base_color_bindings(const BaseColorBuffers& b) {
             {"colors", b.colors},       {"triangle_materials", b.triangle_materials}};
 }
 
-std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
+std::vector<Binding> with_hit_materials(std::span<const Binding> bindings, const TriangleBuffers& triangles) {
     std::vector<Binding> all(bindings.begin(), bindings.end());
-    const BaseColorBuffers none, &masks = triangles.masks ? *triangles.masks : none;
-    for (const Binding& binding : if_used(base_color_bindings(masks))) all.push_back(binding);
+    const BaseColorBuffers none, *read = triangles.masks ? triangles.masks : triangles.sides;
+    for (const Binding& binding : if_used(base_color_bindings(read ? *read : none))) all.push_back(binding);
     return all;
 }
 

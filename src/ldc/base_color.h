@@ -27,8 +27,8 @@ struct BaseColorBuffers {
 
 std::vector<Binding> base_color_bindings(const BaseColorBuffers& buffers);
 
-/// `bindings`, and the same for a pass that tests the alpha of masked triangles; where there are none, it uses none of
-/// them.
-std::vector<Binding> with_alpha_test(std::span<const Binding> bindings, const TriangleBuffers& triangles);
+/// `bindings`, and the same for a pass that asks which hits count: tests the alpha of masked triangles, culls the backs
+/// of single-sided ones. Where there are neither, it uses none of them.
+std::vector<Binding> with_hit_materials(std::span<const Binding> bindings, const TriangleBuffers& triangles);
 
 }  // namespace peelray

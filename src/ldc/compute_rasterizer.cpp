@@ -30,7 +30,7 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"bodies", state.cubes.table.entries},
                                 {"blocks", blocks_},
                                 Binding::if_used("corners", corners ? &state.cubes.corners : nullptr)};
-    const std::vector<Binding> bindings = with_alpha_test(geometry, triangles);
+    const std::vector<Binding> bindings = with_hit_materials(geometry, triangles);
     commands.run(
         device.pass("ldc_raster",
                     {{"masked", masked}, {"small_pixels", small_pixels(p.triangles)}, {"keeps_corners", corners}}),

@@ -51,7 +51,7 @@ RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Samplin
     return result;
 }
 
-RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles) {
+RasterSetup with_hit_materials(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles) {
     RasterSetup result = setup;
     result.constants.push_back({"masked", state.tests_alpha(triangles)});
     return result;

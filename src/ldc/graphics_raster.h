@@ -23,7 +23,7 @@ struct RoutedSetup {
 RoutedSetup routed_setup(const Device& device, const CubeLayout& layout, Sampling sampling, bool layered);
 
 /// The setup of a pass whose fragments are tested for holes (shaders/ldc/ldc_routed_alpha.glsl).
-RasterSetup with_alpha_test(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles);
+RasterSetup with_hit_materials(const RasterSetup& setup, const BuildState& state, const TriangleBuffers& triangles);
 
 /// The power of two that holds LDIs of so many pixels per side.
 uint32_t viewport_side(uint32_t resolution);

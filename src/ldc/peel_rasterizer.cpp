@@ -88,8 +88,8 @@ uint32_t PeelRasterizer::record_complexity(Commands& commands, const BuildState&
     DrawTargets targets;
     targets.width = targets.height = p.side;
     targets.viewport = p.viewport;
-    commands.draw(state.device.raster_pass("ldc_peel_count", with_alpha_test(counting_.setup, state, triangles)),
-                  with_alpha_test(bindings, triangles), p, std::span(&range, 1), targets);
+    commands.draw(state.device.raster_pass("ldc_peel_count", with_hit_materials(counting_.setup, state, triangles)),
+                  with_hit_materials(bindings, triangles), p, std::span(&range, 1), targets);
     MaxParams step{0, texels, texels};
     while (step.count > 1) {
         commands.run(state.device.pass("ldc_max"), {{"layer_counts", layer_counts_}}, step,
@@ -123,7 +123,7 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
                   {"groups", groups_}},
                  PeelPlanParams{place, index, passes, 3 * p.triangles, draws, texels}, groups_for(passes, 64));
 
-    const RasterPass& peel = device.raster_pass("ldc_peel", with_alpha_test(peeling_.setup, state, triangles));
+    const RasterPass& peel = device.raster_pass("ldc_peel", with_hit_materials(peeling_.setup, state, triangles));
     for (p.level = 0; p.level < passes; p.level++) {
         const Image2D &depth_map = depth_maps_[p.level & 1], &id_map = id_maps_[p.level & 1];
         DrawTargets targets{{&depth_map, &id_map}, &depth_, p.side, p.side, p.viewport, 3, apart_};
@@ -133,7 +133,7 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
                                     {"bodies", state.cubes.table.entries},
                                     {"depth_map", depth_maps_[(p.level & 1) ^ 1]},
                                     {"id_map", id_maps_[(p.level & 1) ^ 1]}};
-        commands.draw_indirect(peel, with_alpha_test(bindings, triangles), p,
+        commands.draw_indirect(peel, with_hit_materials(bindings, triangles), p,
                                {draws_, uint64_t(p.level) * draws * sizeof(DrawArguments), draws}, targets);
         commands.run_indirect(device.pass("ldc_peel_emit"),
                               {{"positions", triangles.positions},

@@ -22,6 +22,7 @@ static Constants walk_constants(const TracedScene& scene, HitTest test, bool cou
     return {{"hit_test", uint32_t(test)},
             {"traversal", uint32_t(scene.cubes.layout().traversal)},
             {"masked", scene.triangles.masks && scene.cubes.tests_triangles()},
+            {"single_sided", scene.triangles.sides != nullptr},
             {"counting", counting}};
 }
 
@@ -76,7 +77,7 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
                               {"hits", hits},
                               Binding::if_used("costs", counting ? &queue.counting->costs : nullptr),
                               Binding::if_used("count_totals", counting ? &queue.counting->totals : nullptr)});
-    bindings = with_alpha_test(bindings, scene.triangles);
+    bindings = with_hit_materials(bindings, scene.triangles);
     if (queue.groups) {
         commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
         return;

@@ -16,6 +16,8 @@ struct TriangleBuffers {
     uint32_t count = 0;  ///< triangles, < 2^30
     /// Where they have holes; must outlive this. Null: no material is masked.
     const BaseColorBuffers* masks = nullptr;
+    /// Which of them show their front only; the same buffers, which must outlive this. Null: all show both sides.
+    const BaseColorBuffers* sides = nullptr;
 
     TriangleBuffers() = default;
     /// Uploads. Throws Error beyond 2^30 triangles or the device's memory.

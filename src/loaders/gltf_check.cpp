@@ -126,6 +126,7 @@ Members material_members() {
         text("name"),
         text("alphaMode"),
         number("alphaCutoff"),
+        flag("doubleSided"),
         numbers("emissiveFactor", 3),
         texture("normalTexture"),
         texture("occlusionTexture"),

@@ -60,6 +60,7 @@ class MaterialReader {
 
     void read() {
         material_.name = from_.name;
+        material_.double_sided = from_.doubleSided;
         read_metallic_roughness();
         read_emission();
         read_transmission();
@@ -229,6 +230,7 @@ void GltfLoader::read_materials() {
     Material fallback;
     fallback.name = "default";
     fallback.metallic = 1;  // the format's defaults
+    fallback.double_sided = false;
     scene.materials.push_back(std::move(fallback));
     uv_sources.emplace_back();
 }

@@ -20,18 +20,20 @@ struct Bvh {
         uint32_t index = ~0u;  ///< into triangles.corners
     };
 
-    explicit Bvh(const Geometry& geometry, const AlphaTest& alpha = {});
+    explicit Bvh(const Geometry& geometry, const AlphaTest& alpha = {}, const Sidedness& sides = {});
     ~Bvh();
     Bvh(const Bvh&) = delete;
     Bvh& operator=(const Bvh&) = delete;
 
-    Found nearest(const OracleRay& ray, uint32_t skip) const;
+    /// `to_light`: the ray goes from a surface to a light, which meets the other sides of what is in between.
+    Found nearest(const OracleRay& ray, uint32_t skip, bool to_light = false) const;
     bool occluded(const OracleRay& ray) const;
     /// All triangles whose enlarged boxes the ray meets, `reach` before tmin and behind tmax included.
     std::vector<uint32_t> along(const OracleRay& ray) const;
 
     TriangleSet triangles;
     AlphaTest alpha;  ///< a hit where it finds a hole does not count
+    Sidedness sides;  ///< nor does one on a side that is not shown
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 };

@@ -17,9 +17,11 @@ enum class Mode { nearest, occluded, collect };
 struct Query : RTCIntersectContext {
     const TriangleSet& triangles;
     const AlphaTest& alpha;
+    const Sidedness& sides;
     PreparedRay ray;
     Mode mode;
     uint32_t skip = ~0u;
+    bool to_light = false;
     double reach = 0;    ///< of the scene's diagonal
     double begin = 0;    ///< scaled t of the origin that Embree got
     double to_unit = 1;  ///< from scaled t to Embree's
@@ -38,6 +40,8 @@ struct Query : RTCIntersectContext {
         if (id == skip || !ray.intersect(triangles.corners[candidate], found)) return tfar;
         if (found.t > hit.t || (found.t == hit.t && id > hit.triangle)) return tfar;
         if (!alpha.is_present(id, found.u, found.v)) return tfar;
+        if (sides.is_single(id) && comes_from_front(triangles.corners[candidate], ray.direction) == to_light)
+            return tfar;
         hit = found;
         hit.triangle = id;
         index = candidate;
@@ -93,8 +97,8 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
     if (args->valid[0]) visit(args->context, args->primID, reinterpret_cast<RTCRay*>(args->ray)->tfar);
 }
 
-Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip) {
-    Query query{{}, bvh.triangles, bvh.alpha, {}, mode, skip, Bvh::reach};
+Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip, bool to_light = false) {
+    Query query{{}, bvh.triangles, bvh.alpha, bvh.sides, {}, mode, skip, to_light, Bvh::reach};
     rtcInitIntersectContext(&query);
     const std::optional<PreparedRay> prepared = PreparedRay::make(ray, bvh.triangles);
     if (!bvh.scene || !prepared) return query;
@@ -110,7 +114,8 @@ Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip) {
 
 }  // namespace
 
-Bvh::Bvh(const Geometry& geometry, const AlphaTest& alpha) : triangles(geometry), alpha(alpha) {
+Bvh::Bvh(const Geometry& geometry, const AlphaTest& alpha, const Sidedness& sides)
+    : triangles(geometry), alpha(alpha), sides(sides) {
     if (triangles.ids.empty()) return;  // every ray misses
     device = rtcNewDevice(nullptr);
     if (!device)
@@ -140,8 +145,8 @@ Bvh::~Bvh() {
     if (device) rtcReleaseDevice(device);
 }
 
-Bvh::Found Bvh::nearest(const OracleRay& ray, uint32_t skip) const {
-    const Query query = trace(*this, ray, Mode::nearest, skip);
+Bvh::Found Bvh::nearest(const OracleRay& ray, uint32_t skip, bool to_light) const {
+    const Query query = trace(*this, ray, Mode::nearest, skip, to_light);
     return {query.hit, query.index};
 }
 
@@ -153,7 +158,8 @@ std::vector<uint32_t> Bvh::along(const OracleRay& ray) const {
     return trace(*this, ray, Mode::collect, ~0u).collected;
 }
 
-Oracle::Oracle(const Geometry& geometry, const AlphaTest& alpha) : impl_(std::make_unique<Impl>(geometry, alpha)) {}
+Oracle::Oracle(const Geometry& geometry, const AlphaTest& alpha, const Sidedness& sides)
+    : impl_(std::make_unique<Impl>(geometry, alpha, sides)) {}
 Oracle::~Oracle() = default;
 
 OracleHit Oracle::closest(const OracleRay& ray, uint32_t skip) const {
@@ -164,7 +170,8 @@ double Oracle::diagonal() const {
     return impl_->triangles.diagonal;
 }
 
-OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip, const AlphaTest& alpha) {
+OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip, const AlphaTest& alpha,
+                              const Sidedness& sides) {
     const TriangleSet triangles(geometry);
     OracleHit nearest{infinity, ~0u, 0, 0};
     const std::optional<PreparedRay> prepared = PreparedRay::make(ray, triangles);
@@ -173,6 +180,7 @@ OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, ui
         // Ascending indices: of equal t the lowest index stays, as in the oracle.
         if (triangles.ids[i] == skip || !prepared->intersect(triangles.corners[i], hit) || hit.t >= nearest.t) continue;
         if (!alpha.is_present(triangles.ids[i], hit.u, hit.v)) continue;
+        if (!sides.shows(triangles.ids[i], comes_from_front(triangles.corners[i], prepared->direction))) continue;
         nearest = hit;
         nearest.triangle = triangles.ids[i];
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/alpha_test.h"
+#include "scene/sidedness.h"
 
 namespace peelray {
 
@@ -35,8 +36,8 @@ enum class Verdict {
 /// Double-precision ray casting: Embree 3 (robust mode) finds candidate triangles, each is intersected again in double.
 class Oracle {
   public:
-    /// `alpha`: where the geometry has holes.
-    explicit Oracle(const Geometry& geometry, const AlphaTest& alpha = {});
+    /// `alpha`: where the geometry has holes; `sides`: from which sides it is there.
+    explicit Oracle(const Geometry& geometry, const AlphaTest& alpha = {}, const Sidedness& sides = {});
     ~Oracle();
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;
@@ -64,6 +65,6 @@ class Oracle {
 /// The same answer as Oracle::closest() from a loop over all triangles, without Embree: what tests compare the oracle
 /// with.
 OracleHit closest_brute_force(const Geometry& geometry, const OracleRay& ray, uint32_t skip = ~0u,
-                              const AlphaTest& alpha = {});
+                              const AlphaTest& alpha = {}, const Sidedness& sides = {});
 
 }  // namespace peelray

@@ -75,7 +75,7 @@ struct PathTracer::Impl {
 
     Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment)
         : geometry(geometry),
-          bvh(geometry, AlphaTest(scene, geometry)),
+          bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)),
           surfaces(scene, geometry),
           surroundings(environment),
           lights(moment.lights) {

@@ -228,7 +228,7 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
     uint32_t skip = triangle;
     double from = 0;
     for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
-        const OracleHit hit = context_.bvh.nearest({start, from, direction, distance}, skip).hit;
+        const OracleHit hit = context_.bvh.nearest({start, from, direction, distance}, skip, true).hit;
         if (!hit.hit()) return share;
         const Optics& m = context_.surfaces.optics_of_triangle(hit.triangle);
         if (!m.transmits()) return glm::dvec3(0);

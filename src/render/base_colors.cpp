@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/material.h"
+#include "scene/sidedness.h"
 
 namespace peelray {
 namespace {
@@ -18,7 +19,7 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.ior = std::max(material.ior, 1.0f);
     m.texture = material.base_color_texture;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
-              (colored ? MATERIAL_COLORED : 0u);
+              (colored ? MATERIAL_COLORED : 0u) | (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
     m.thickness = material.thickness;
     m.alpha = material.alpha;
     m.alpha_cutoff = material.alpha_cutoff;

@@ -29,11 +29,12 @@ void ComputeView::record(Commands& commands, const GpuScene& scene, const ViewTa
                            {"visibility", target.visibility},
                            {"queue", queues.counters()},
                            {"blocks", blocks_}};
-    const std::vector<Binding> bindings = with_alpha_test(own, scene.triangles);
+    const std::vector<Binding> bindings = with_hit_materials(own, scene.triangles);
     const ViewParams p{jitter, uint32_t(scene.drawn), capacity_};
-    const bool masked = scene.triangles.masks != nullptr;
+    const bool masked = scene.triangles.masks != nullptr, single_sided = scene.triangles.sides != nullptr;
     commands.fill(target.visibility, ~0u);
-    commands.run(device_.pass("view_triangles", {{"masked", masked}}), bindings, p, groups_for(scene.drawn, 256));
+    commands.run(device_.pass("view_triangles", {{"masked", masked}, {"single_sided", single_sided}}), bindings, p,
+                 groups_for(scene.drawn, 256));
     commands.run_indirect(device_.pass("view_blocks", {{"masked", masked}}), bindings, p, queues.counters(),
                           PathQueues::groups_offset(QUEUE_GROUPS_VIEW));
 }

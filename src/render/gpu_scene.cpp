@@ -8,6 +8,7 @@
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
 #include "scene/picture.h"
+#include "scene/sidedness.h"
 #include "view/view_params.h"
 
 namespace peelray {
@@ -60,6 +61,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     normals = upload(device, commands, "vertex normals", assembly.normals);
     base_colors = upload_base_colors(device, commands, scene, assembly);
     if (has_masks(scene, assembly.materials)) triangles.masks = &base_colors;
+    if (has_single_sided(scene, assembly.materials)) triangles.sides = &base_colors;
     triangle_ids = upload(device, commands, "places of triangles in the file", assembly.ids);
     triangle_objects = upload(device, commands, "objects of the triangles", assembly.objects);
     std::vector<bool> used(scene.materials.size(), false);

@@ -4,6 +4,7 @@
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
+#include "scene/sidedness.h"
 
 namespace peelray {
 
@@ -14,10 +15,10 @@ RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, con
       triangle_ids_(device, "places of triangles in the file", assembly.ids.size() * 4),
       instances_(device, instance_infos(assembly)) {
     Commands commands(device);
-    if (has_masks(scene, assembly.materials)) {
-        base_colors_ = upload_base_colors(device, commands, scene, assembly);
-        triangles_.masks = &base_colors_;
-    }
+    const bool masked = has_masks(scene, assembly.materials), culled = has_single_sided(scene, assembly.materials);
+    if (masked || culled) base_colors_ = upload_base_colors(device, commands, scene, assembly);
+    if (masked) triangles_.masks = &base_colors_;
+    if (culled) triangles_.sides = &base_colors_;
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));
     instances_.place(commands, transforms_of(assembly.instances, moment.worlds));
     std::vector<StructureBody> structures;

@@ -1,5 +1,5 @@
 // A scene for rays alone: cubes, or acceleration structures, and what tells whose triangles were hit, nothing to shade
-// with but what tells of holes.
+// with but what tells which hits count.
 #pragma once
 
 #include "render/tracers/ray_tracer.h"
@@ -37,7 +37,7 @@ class RayScene {
   private:
     Device& device_;
     TriangleBuffers triangles_;
-    BaseColorBuffers base_colors_;  ///< only where a material is masked
+    BaseColorBuffers base_colors_;  ///< only where a material is masked or single-sided
     Buffer triangle_ids_, hits_;
     Instances instances_;
     std::unique_ptr<RayTracer> tracer_;

@@ -35,6 +35,7 @@ void record_view(Commands& commands, Device& device, const std::string& name, co
     const bool masked = scene.triangles.masks != nullptr;
     RasterSetup setup;
     setup.front = name;
+    setup.constants = {{"single_sided", scene.triangles.sides != nullptr}};
     const RasterPass& pass = device.raster_pass(masked ? name + "_masked" : name, setup);
     for (const Binding& binding : if_used(base_color_bindings(scene.base_colors))) bindings.push_back(binding);
     commands.draw(pass, bindings, params, scene.draws, target.color, target.depth, target.visibility);

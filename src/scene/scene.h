@@ -44,7 +44,8 @@ struct Material {
     float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
     float attenuation_distance = std::numeric_limits<float>::infinity();
-    bool unlit = false;  ///< KHR_materials_unlit: base colour as it is
+    bool unlit = false;        ///< KHR_materials_unlit: base colour as it is
+    bool double_sided = true;  ///< both sides are shown, where the file says nothing else; see is_single_sided()
 };
 
 /// Joints of a skin that pull at a vertex, and how much; the weights sum to 1, or all are 0 (the vertex follows its

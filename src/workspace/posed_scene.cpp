@@ -7,6 +7,7 @@
 #include "loaders/load.h"
 #include "motion/animation.h"
 #include "motion/bounds.h"
+#include "scene/sidedness.h"
 #include "workspace/camera_choice.h"
 #include "workspace/scene_changes.h"
 
@@ -40,6 +41,7 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     if (!animation_.empty()) complete_targets(*scene);
     framed_ = animation_.empty() ? peelray::bounds(*scene, at_rest(*scene)) : bounds_over(*scene, animation_);
     if (settings.material) override_materials(*scene, *settings.material, framed_);
+    if (settings.double_sided) show_both_sides(*scene);
     bounds_ = settings.floor ? add_floor(*scene, framed_) : framed_;
     scene_ = std::move(scene);
     if (animation_.empty())

@@ -25,7 +25,11 @@ void override_materials(Scene& scene, MaterialOverride choice, const Box& box) {
             material.roughness = 0.9f;
             break;
     }
-    for (Material& each : scene.materials) each = material;
+    for (Material& each : scene.materials) {
+        // Which sides are shown is part of the model's shape: an outline's hull would hide what it surrounds.
+        material.double_sided = each.double_sided;
+        each = material;
+    }
 }
 
 Box add_floor(Scene& scene, const Box& box) {

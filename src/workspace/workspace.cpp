@@ -1,9 +1,12 @@
 #include "workspace/workspace.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "scene/sidedness.h"
+#include "workspace/culled_view.h"
 #include "workspace/reference.h"
 #include "workspace/render_settings.h"
 
@@ -50,10 +53,27 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         check_interrupt();
         if (progress) progress(share);
     };
-    if (settings.tracer == Tracer::reference) return reference_picture(scene_, settings, report);
+    if (settings.tracer == Tracer::reference) {
+        MadePicture made = reference_picture(scene_, settings, report);
+        note_culled(settings, made.picture);
+        return made;
+    }
     if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_ambient_, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
-    return render_on_device(settings, report);
+    MadePicture made = render_on_device(settings, report);
+    note_culled(settings, made.picture);
+    return made;
+}
+
+/// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at
+/// only where next to nothing is.
+void Workspace::note_culled(const PictureSettings& settings, const Picture& picture) {
+    if (noted_culled_ || std::ranges::none_of(scene_.scene().materials, is_single_sided)) return;
+    if (covered(picture) > kMostSeenInNote) return;
+    const std::string text = culled_note(culled_view(scene_.scene(), scene_.geometry(), settings, picture));
+    if (text.empty()) return;
+    noted_culled_ = true;
+    note(notes_, text);
 }
 
 /// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another,

@@ -63,6 +63,7 @@ class Workspace {
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
+    void note_culled(const PictureSettings& settings, const Picture& picture);
 
     PictureArguments settings_;
     Notes notes_;
@@ -79,6 +80,7 @@ class Workspace {
     std::optional<double> posed_;   ///< the moment that the renderer is in
     bool noted_ambient_ = false;    ///< said that a tracer has none
     bool noted_tolerance_ = false;  ///< said that it is too small
+    bool noted_culled_ = false;     ///< said that the camera is behind single-sided faces
 };
 
 }  // namespace peelray

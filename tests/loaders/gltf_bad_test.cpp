@@ -98,6 +98,7 @@ TEST(GltfBad, AlphaModesAndCutoffs) {
     EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", -0.1}}),
                     "materials[0]: alphaCutoff -0.1 must not be below 0");
     EXPECT_MENTIONS(with({{"alphaCutoff", -1}}), "must not be below 0");
+    EXPECT_MENTIONS(with({{"doubleSided", 1}}), "materials[0].doubleSided: is number");
     EXPECT_MENTIONS(with({{"alphaMode", "MASK"}, {"alphaCutoff", 1e300}}), "floating point");
 }
 

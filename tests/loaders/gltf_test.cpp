@@ -9,6 +9,7 @@
 #include "loaders/scene_files.h"
 #include "motion/animation.h"
 #include "scene/alpha_test.h"
+#include "scene/sidedness.h"
 
 namespace peelray::testing {
 namespace {
@@ -606,6 +607,26 @@ TEST(Gltf, RotationOfPi) {
     gltf["nodes"][0] = {{"mesh", 0}, {"rotation", {0, std::sin(pi / 2), 0, std::cos(pi / 2)}}};
     const Geometry geometry = flatten(load(folder, gltf));
     expect_near(geometry.positions[geometry.triangles[0].y], {-1, 0, 0});
+}
+
+TEST(Gltf, MaterialsAreSingleSidedUnlessTheFileSaysOtherwise) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["materials"] = json::parse(R"([
+        {}, {"doubleSided": false}, {"doubleSided": true},
+        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}}},
+        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
+                        "KHR_materials_volume": {"thicknessFactor": 0.1}}},
+        {"extensions": {"KHR_materials_volume": {"thicknessFactor": 0.1}}},
+        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}, "KHR_materials_unlit": {},
+                        "KHR_materials_volume": {"thicknessFactor": 0.1}}}])");
+    const Scene scene = load(folder, gltf);
+    // The last one is the default material, of primitives without any.
+    const std::vector<bool> single = {true, true, false, true, false, true, true, true};
+    ASSERT_EQ(scene.materials.size(), single.size());
+    for (size_t i = 0; i < single.size(); i++) EXPECT_EQ(is_single_sided(scene.materials[i]), single[i]) << i;
+    EXPECT_TRUE(has_single_sided(scene, {2, 7}));
+    EXPECT_FALSE(has_single_sided(scene, {2, 4}));
 }
 
 }  // namespace

@@ -144,6 +144,38 @@ TEST(Oracle, HitsInHolesDoNotCount) {
     EXPECT_GT(asked, 50u);
 }
 
+TEST(Oracle, HitsOnBacksDoNotCount) {
+    Geometry geometry = soup(800, 7);
+    Scene scene;
+    scene.materials.resize(2);
+    scene.materials[1].double_sided = false;
+    for (size_t i = 0; i < geometry.triangles.size(); i++) geometry.materials.push_back(i % 3 ? 1 : 0);
+    const Sidedness sides(scene, geometry);
+    const Oracle oracle(geometry, {}, sides), both(geometry);
+    RandomPoints random(11);
+    size_t through = 0;
+    for (int i = 0; i < 10000; ++i) {
+        const OracleRay ray = random_ray(random, geometry, glm::vec3(0), 1);
+        const OracleHit fast = oracle.closest(ray), slow = closest_brute_force(geometry, ray, ~0u, {}, sides),
+                        whole = both.closest(ray);
+        ASSERT_EQ(fast.triangle, slow.triangle);
+        ASSERT_EQ(fast.t, slow.t);
+        ASSERT_EQ(oracle.check(ray, slow.t, slow.triangle), Verdict::same);
+        ASSERT_EQ(oracle.check_any(ray, slow.hit()), Verdict::same);
+        const auto normal = [&](uint32_t triangle) {
+            const glm::uvec3 t = geometry.triangles[triangle];
+            const glm::dvec3 a = geometry.positions[t.x];
+            return glm::cross(glm::dvec3(geometry.positions[t.y]) - a, glm::dvec3(geometry.positions[t.z]) - a);
+        };
+        if (fast.hit() && fast.triangle % 3) ASSERT_LT(glm::dot(normal(fast.triangle), ray.direction), 0);
+        if (fast.triangle == whole.triangle) continue;
+        ASSERT_TRUE(whole.triangle % 3);
+        ASSERT_GE(glm::dot(normal(whole.triangle), ray.direction), 0);
+        through++;
+    }
+    EXPECT_GT(through, 1000u);
+}
+
 TEST(Oracle, AnAnswerBesideAHolesEdgeIsRight) {
     // Half a square is there: x below 0.5.
     Geometry geometry;

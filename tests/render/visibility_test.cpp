@@ -2,6 +2,7 @@
 // rasteriser but for pixels on edges.
 #include <pictures.h>
 #include "effort.h"
+#include "scene/sidedness.h"
 
 namespace peelray {
 namespace {
@@ -12,14 +13,14 @@ struct Nearest {
     int triangle = -1;
 };
 
-Nearest nearest(const Geometry& geometry, const ViewRay& ray) {
+Nearest nearest(const Geometry& geometry, const ViewRay& ray, const Sidedness& sides) {
     Nearest result;
     for (size_t i = 0; i < geometry.triangles.size(); i++) {
         const glm::uvec3 corners = geometry.triangles[i];
         const glm::dvec3 a = geometry.positions[corners.x], u = glm::dvec3(geometry.positions[corners.y]) - a,
                          v = glm::dvec3(geometry.positions[corners.z]) - a, n = glm::cross(ray.direction, v);
         const double det = glm::dot(u, n);
-        if (det == 0) continue;
+        if (det == 0 || !sides.shows(uint32_t(i), det > 0)) continue;  // det = -direction · (u × v)
         const glm::dvec3 from = (ray.origin - a) / det, q = glm::cross(from, u);
         const double b = glm::dot(from, n), c = glm::dot(ray.direction, q), t = glm::dot(v, q);
         if (b < 0 || c < 0 || b + c > 1 || t < 0 || t > result.second) continue;
@@ -52,13 +53,14 @@ class VisibilityTest : public PictureTest {
         const RenderResult picture = render(stage, black, settings);
         EXPECT_EQ(picture.stats.visibility, Visibility::compute);
         const Geometry geometry = flatten(stage.scene);
+        const Sidedness sides(stage.scene, geometry);
         Tally result;
         size_t surfaces = 0;
         for (uint32_t y = 0; y < settings.height; y++)
             for (uint32_t x = 0; x < settings.width; x++) {
                 const size_t i = size_t(y) * settings.width + x;
                 const Nearest want =
-                    nearest(geometry, view_ray(camera, settings.width, settings.height, x + 0.5, y + 0.5));
+                    nearest(geometry, view_ray(camera, settings.width, settings.height, x + 0.5, y + 0.5), sides);
                 const double got = picture.aovs.depth[i];
                 const bool right = want.triangle < 0 ? picture.aovs.triangle[i] < 0
                                                      : std::abs(got - want.distance) < 1e-3 * (1 + want.distance);
@@ -95,6 +97,29 @@ TEST_F(VisibilityTest, PixelsSeeWhatTheirRaysHit) {
     expect_truth(stage, perspective({-0.8f, 0.7f, 0.1f}, {-1, 0.6f, -1}, 70), 6000);  // inside the ball
     expect_truth(stage, orthographic({0.3f, 2, 4}, {0, 0.5f, 0}, 3), 3000);
     expect_truth(stage, orthographic({0.3f, 0.5f, 0.1f}, {0, 0.3f, -4}, 3), 2000);  // from among the bodies
+}
+
+TEST_F(VisibilityTest, BacksOfSingleSidedTrianglesAreNotSeen) {
+    Stage stage = all_kinds();
+    for (Material& material : stage.scene.materials) material.double_sided = false;
+    expect_truth(stage, perspective({0.2f, 1, 4}, {0, 0.5f, 0}, 60), 2000);
+    expect_truth(stage, perspective({0.2f, -0.5f, 4}, {0, 0.5f, 0}, 60), 100);       // from below the floor
+    expect_truth(stage, perspective({-0.8f, 0.7f, 0.1f}, {-1, 0.6f, -1}, 70), 500);  // inside the ball
+    expect_truth(stage, orthographic({0.3f, 0.5f, 0.1f}, {0, 0.3f, -4}, 3), 500);
+    // Ball and floor alone: both ways.
+    for (size_t i : {1, 2, 4}) stage.scene.materials[i].double_sided = true;
+    for (const Camera& camera :
+         {perspective({0.2f, 1, 4}, {0, 0.5f, 0}, 60), perspective({0.2f, -0.5f, 4}, {0, 0.5f, 0}, 60),
+          orthographic({0.3f, 0.5f, 0.1f}, {0, 0.3f, -4}, 3)}) {
+        const RenderResult compute = render(stage, black, with(camera, Visibility::compute)),
+                           raster = render(stage, black, with(camera, Visibility::raster));
+        Tally triangles;
+        for (size_t i = 0; i < compute.aovs.triangle.size(); i++)
+            triangles.add(compute.aovs.triangle[i] == raster.aovs.triangle[i], [&] {
+                return fmt::format("pixel {}: {} and {}", i, compute.aovs.triangle[i], raster.aovs.triangle[i]);
+            });
+        triangles.expect(0.01, 101 * 67);
+    }
 }
 
 TEST_F(VisibilityTest, ComputeAndRasterAgreeButForEdges) {

@@ -43,7 +43,7 @@ void KhrTracer::trace(Commands& commands, const RayQueue& queue, const Buffer& h
 
 void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
     const RayPass& pass = khr_pass(device_, shadows.glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
-                                   shadows.glass ? KhrRays::nearest : KhrRays::occluded, triangles_.masks != nullptr);
+                                   shadows.glass ? KhrRays::nearest_to_light : KhrRays::occluded, triangles_);
     std::vector<Binding> bindings = shadows.surfaces;
     bindings.push_back(Binding::if_used("positions", triangles_.positions));
     bindings.push_back(Binding::if_used("triangles", triangles_.triangles));

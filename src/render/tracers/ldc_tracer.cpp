@@ -61,7 +61,7 @@ void LdcTracer::shadow(Commands& commands, const ShadowRays& shadows) {
     if (shadows.glass)
         bindings.insert(bindings.end(), shadows.surfaces.begin(), shadows.surfaces.end());
     else
-        bindings = with_alpha_test(bindings, triangles_);
+        bindings = with_hit_materials(bindings, triangles_);
     const Pass& pass = device_.pass(std::string(shadows.glass ? "trace_shadow_glass" : "trace_shadow") +
                                         (choice().layout.by_pixel() ? "_pixels" : ""),
                                     traversal_constants(device_, traced(), choice().hit, queue.counting != nullptr));

@@ -6,7 +6,7 @@
 
 namespace peelray {
 
-/// Each body in parts that are all opaque or all masked, in the order of its triangles; all are to be kept.
+/// Each body in parts that are all opaque or not at all, in the order of its triangles; all are to be kept.
 std::vector<StructureBody> structure_bodies(const Scene& scene, const Assembly& assembly);
 
 }  // namespace peelray
