@@ -23,7 +23,8 @@ Stage pane_between_walls() {
 }
 /// What a ray sees there; `front`: the sign of z from where the pane is seen.
 std::optional<glm::dvec3> seen_between_walls(const ViewRay& ray, double front = 1) {
-    const glm::dvec3 wall = ray.direction.z < 0 ? kFar : kNear;
+    const glm::dvec3 wall = ray.direction.z < 0 ? kFar : kNear, at = ray.at_plane(2, ray.direction.z < 0 ? -1 : 10);
+    if (ray.origin.z < -0.99 || !(std::max(std::abs(at.x), std::abs(at.y)) < 89)) return {};
     if (ray.origin.z * ray.direction.z >= 0 || ray.origin.z * front < 0) return wall;
     const glm::dvec3 p = ray.at_plane(2, 0);
     const double reach = std::max(std::abs(p.x), std::abs(p.y));
@@ -41,7 +42,7 @@ TEST_F(SidesTest, TheCameraSeesFronts) {
     for (const Camera& camera : kCameras)
         tally(render(stage, black, settings_for(camera, 96)), camera, 1e-5, [](const ViewRay& ray) {
             return seen_between_walls(ray);
-        }).expect(0, 6000);
+        }).expect(0, 5000);
 }
 
 TEST_F(SidesTest, AReflectionTakesTheFrontAlong) {
@@ -54,7 +55,7 @@ TEST_F(SidesTest, AReflectionTakesTheFrontAlong) {
         for (const Camera& camera : kCameras)
             tally(render(stage, black, settings_for(camera, 96)), camera, 1e-5, [&](const ViewRay& ray) {
                 return seen_between_walls(ray, across_z ? -1 : 1);
-            }).expect(0, 6000);
+            }).expect(0, 5000);
     }
 }
 
@@ -244,7 +245,7 @@ TEST_F(SidesTest, WhatIsMorphedInsideOutIsSeenFromTheOtherSide) {
     for (const Camera& camera : kCameras)
         tally(render(stage, black, settings_for(camera, 96)), camera, 1e-5, [](const ViewRay& ray) {
             return seen_between_walls(ray, -1);
-        }).expect(0, 6000);
+        }).expect(0, 5000);
 }
 
 }  // namespace

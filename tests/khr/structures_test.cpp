@@ -35,7 +35,7 @@ class StructuresTest : public KhrTest {
                                                    vec3(1, 1, 3), 16, Sampling::conservative);
         StructureBody body;
         // In two parts: hits must be counted over both.
-        body.parts = {{0, 3, false}, {3, uint32_t(triangles_.size()) - 3, false}};
+        body.parts = {{0, 3, true}, {3, uint32_t(triangles_.size()) - 3, true}};
         body.last_vertex = uint32_t(positions_.size()) - 1;
         body.update = update;
         structures_ = std::make_unique<Structures>(device(), body_->triangles, body_->instances, std::vector{body});

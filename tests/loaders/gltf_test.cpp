@@ -612,20 +612,23 @@ TEST(Gltf, RotationOfPi) {
 TEST(Gltf, MaterialsAreSingleSidedUnlessTheFileSaysOtherwise) {
     const TempFolder folder;
     json gltf = square();
-    gltf["materials"] = json::parse(R"([
-        {}, {"doubleSided": false}, {"doubleSided": true},
-        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}}},
-        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5},
-                        "KHR_materials_volume": {"thicknessFactor": 0.1}}},
-        {"extensions": {"KHR_materials_volume": {"thicknessFactor": 0.1}}},
-        {"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}, "KHR_materials_unlit": {},
-                        "KHR_materials_volume": {"thicknessFactor": 0.1}}}])");
+    json glass = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                  {"extensions",
+                   {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
+                    {"KHR_materials_volume", {{"thicknessFactor", 0.1}}}}}};
+    json wall = glass, opaque = glass, metal = glass, unlit = glass;
+    wall["extensions"].erase("KHR_materials_volume");
+    opaque["extensions"].erase("KHR_materials_transmission");
+    metal["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    unlit["extensions"]["KHR_materials_unlit"] = json::object();
+    gltf["materials"] = {json::object(), {{"doubleSided", false}}, {{"doubleSided", true}}, wall, glass, opaque, metal,
+                         unlit};
     const Scene scene = load(folder, gltf);
     // The last one is the default material, of primitives without any.
-    const std::vector<bool> single = {true, true, false, true, false, true, true, true};
+    const std::vector<bool> single = {true, true, false, true, false, true, true, true, true};
     ASSERT_EQ(scene.materials.size(), single.size());
     for (size_t i = 0; i < single.size(); i++) EXPECT_EQ(is_single_sided(scene.materials[i]), single[i]) << i;
-    EXPECT_TRUE(has_single_sided(scene, {2, 7}));
+    EXPECT_TRUE(has_single_sided(scene, {2, 8}));
     EXPECT_FALSE(has_single_sided(scene, {2, 4}));
 }
 
