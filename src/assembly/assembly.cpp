@@ -290,13 +290,18 @@ class Assembler {
         begin_body();
         const auto body = uint32_t(out_.bodies.size() - 1);
         for (const Place& place : places) {
-            const Assembly::Piece piece{place.node, place.primitive, body, uint32_t(out_.positions.size()),
-                                        uint32_t(out_.triangles.size())};
+            const Deformed vertices = deformed(place, worlds_[size_t(place.node)]);
+            const Assembly::Piece piece{place.node,
+                                        place.primitive,
+                                        body,
+                                        uint32_t(out_.positions.size()),
+                                        uint32_t(out_.triangles.size()),
+                                        vertices.mirrors};
             if (is_water(place.node))
                 out_.waters[size_t(std::find(waters_.begin(), waters_.end(), place.node) - waters_.begin())] = piece;
             else
                 out_.pieces.push_back(piece);
-            append(place, deformed(place, worlds_[size_t(place.node)]), first_id(place), objects_[size_t(place.node)]);
+            append(place, vertices, first_id(place), objects_[size_t(place.node)]);
         }
         out_.instances.push_back({body, -1, glm::mat4(1), 0, 0});
     }

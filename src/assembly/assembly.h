@@ -29,6 +29,7 @@ struct Assembly {
         int node = 0;
         uint32_t primitive = 0;  ///< of the node's mesh
         uint32_t body = 0, first_vertex = 0, first_triangle = 0;
+        bool mirrored = false;  ///< its triangles are turned over, as the moment of assembly wants them
     };
 
     std::vector<glm::vec3> positions, normals;  ///< one per vertex; of bodies that deform: of the moment of assembly

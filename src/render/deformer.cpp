@@ -72,7 +72,7 @@ Deformer::Deformer(Device& device, const Scene& scene, const Moment& moment, con
         weight_count_ += piece.targets;
         groups += (piece.vertices + 63) / 64;
         flat_ |= primitive.flat;
-        mirrored_.push_back(is_mirrored(primitive, matrices));
+        mirrored_.push_back(place.mirrored);  // pose() turns over what this moment wants otherwise
         pieces_.push_back(piece);
     }
     const Assembly::Body &first = assembly.bodies[assembly.fixed], &last = assembly.bodies.back();

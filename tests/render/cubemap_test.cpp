@@ -89,6 +89,26 @@ TEST_F(CubemapTracerTest, ProbesSeeThroughHoles) {
     tally(cubemap(stage, black, settings), traced, 0.02).expect(0.08, 96 * 96);
 }
 
+TEST_F(CubemapTracerTest, ProbesSeeNoBacksOfSingleSidedMaterials) {
+    // A wall beside the ball, whose box does not hold the probe.
+    for (const bool faces_ball : {false, true}) {
+        SCOPED_TRACE(faces_ball);
+        Stage stage;
+        stage.add(sphere({0, 0, 0}, 0.1f, 32), plane_mirror());
+        stage.add(room(50, [&](glm::vec3) { return glm::vec3(0.1f, 0.2f, 0.9f); }), unlit({1, 1, 1}));
+        const RenderSettings settings = settings_for(perspective({0.2f, 0.3f, 1}, {0, 0, 0}, 10), 64);
+        const RenderResult without = cubemap(stage, black, settings);
+        const float z = faces_ball ? 20.f : -20.f;
+        stage.add(parallelogram({-20, -20, z}, {0, 0, -2 * z}, {0, 60, 0}), unlit({0.9f, 0.3f, 0.1f}));
+        stage.scene.materials.back().double_sided = false;
+        const size_t differing = tally(cubemap(stage, black, settings), without, 1e-5).wrong;
+        if (faces_ball)
+            EXPECT_GT(differing, 200u);
+        else
+            EXPECT_EQ(differing, 0u);
+    }
+}
+
 TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
     // In a white room rough metal looks as it does under a white sky, whatever the level; the probe, not the sky, is
     // seen.

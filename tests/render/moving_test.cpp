@@ -328,5 +328,51 @@ TEST_F(MovingTest, WaterTooFarFromItsBeginningIsRefused) {
     expect_error([&] { renderer->pose(moment_of(scene, "0", 4000)); }, {"3600", "4000"});
 }
 
+TEST_F(MovingTest, WhatIsReflectedByItsNodeKeepsItsFront) {
+    // Balls whose nodes reflect them after half of the animation: one moves as a body, one morphs, one has a skin. A
+    // ball is the same from outside with and without its backs, at first and after the camera came back to a moment.
+    Scene scene = three_balls();
+    for (AnimationChannel& channel : scene.animations[0].channels)
+        if (channel.path == Path::translation) {
+            channel.path = Path::scale;
+            channel.values = {1, 1, 1, -1, 1, 1};
+        }
+    const auto scale = [&](int node) {
+        scene.animations[0].channels.push_back(
+            {node, Path::scale, AnimationChannel::Interpolation::linear, 3, {0, 2}, {1, 1, 1, 1, 1, -1}});
+    };
+    scale(2);
+    Primitive soft = sphere({0, 0, 0}, 0.3f, 8);
+    soft.material = 3;
+    for (size_t k = 0; k < soft.positions.size(); k++) {
+        soft.joints.emplace_back();
+        soft.joints.back().weights[0] = 1;
+    }
+    scene.meshes.push_back({"skinned", {soft}, {}});
+    Node skinned, joint;
+    skinned.mesh = int(scene.meshes.size()) - 1;
+    skinned.skin = 0;
+    joint.fixed = false;
+    joint.rest.translation = {0.2f, 0.4f, 1.5f};
+    joint.local = joint.rest.matrix();
+    scene.nodes.push_back(skinned);
+    scene.nodes.push_back(joint);
+    scene.skins.push_back({"skin", {int(scene.nodes.size()) - 1}, {glm::mat4(1)}});
+    scale(int(scene.nodes.size()) - 1);
+    Scene single = scene;
+    for (Material& material : single.materials) material.double_sided = false;
+    for (const Visibility visibility : {Visibility::raster, Visibility::compute}) {
+        RenderSettings settings = small(perspective({1, 2.5f, 4}, {0, 0.6f, 0}, 50));
+        settings.visibility = visibility;
+        const auto moving = renderer_in(single, "0", 0, sky);
+        for (const double time : {0.3, 1.7, 0.6}) {
+            SCOPED_TRACE(time);
+            const RenderResult expected = renderer_in(scene, "0", time, sky)->render(settings);
+            tally(renderer_in(single, "0", time, sky)->render(settings), expected, 1e-5).expect(0.003, 48 * 48);
+            tally(at(*moving, single, "0", time, settings), expected, 1e-5).expect(0.003, 48 * 48);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace peelray

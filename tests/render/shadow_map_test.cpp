@@ -201,6 +201,32 @@ TEST_F(ShadowMapTest, LightFallsThroughHoles) {
     }
 }
 
+TEST_F(ShadowMapTest, OnlyFrontsOfSingleSidedMaterialsCastOne) {
+    for (const bool lamp : {false, true})
+        for (const bool faces_light : {false, true}) {
+            SCOPED_TRACE(fmt::format("{} {}", lamp, faces_light));
+            Stage stage;
+            stage.add(ground(3), lambert({1, 1, 1}));
+            Primitive pane = disc({0, 1, 0}, 0.8f);
+            if (!faces_light)
+                for (auto& triangle : pane.triangles) std::swap(triangle.y, triangle.z);
+            stage.add(pane, lambert({1, 0, 0}));
+            stage.scene.materials.back().double_sided = false;
+            if (lamp)
+                stage.lamp({0, 3, 0}, {10, 10, 10});
+            else
+                stage.sun({0, -1, 0}, glm::vec3(kPi));
+            const double radius = 0.8 * (lamp ? 1.5 : 1);
+            const Camera camera = orthographic({0, 0.9f, 0}, {0, 0, 0}, 4, {0, 0, -1});
+            outline(
+                lit(stage, settings_for(camera, 128)), camera, 0.03,
+                [&](glm::dvec3 p) { return faces_light && in_disc(p, glm::dvec3(0), radius); },
+                [](glm::dvec3) { return false; },
+                [&](glm::dvec3 p) { return lamp ? 30 / std::pow(glm::length(glm::dvec3(0, 3, 0) - p), 3) / kPi : 1; })
+                .expect(0, 12000);
+        }
+}
+
 TEST_F(ShadowMapTest, GlassCastsNone) {
     Stage stage;
     stage.add(ground(2), lambert({1, 1, 1}));
