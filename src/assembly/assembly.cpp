@@ -131,7 +131,7 @@ class Assembler {
             const std::vector<int>& joints = scene_.skins[size_t(node.skin)].joints;
             const auto moves = [&](int joint) { return still_[size_t(joint)].anchor >= 0; };
             return std::any_of(joints.begin(), joints.end(), moves) ||
-                   (moves(place.node) && has_free_vertex(primitive));
+                   (moves(place.node) && (node.is_instance || has_free_vertex(primitive)));
         }
         // A changing scale is not a rigid motion, and it may leave no space to transform rays into.
         const Still& still = still_[size_t(place.node)];

@@ -20,7 +20,7 @@ inline constexpr Setting animation{"animation"}, batch{"batch"}, block{"block"},
     camera{"camera"}, depth{"depth"}, device{"device"}, double_sided{"double-sided"}, effects{"effects"}, eye{"eye"},
     fov{"fov"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, routing{"routing"}, size{"size"}, spp{"spp"}, time{"time"},
     tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
-    visibility{"visibility"};
+    variant{"variant"}, visibility{"visibility"};
 }  // namespace setting
 
 /// Around the name of a setting in the text of an Error. A front end that prints the text replaces both.

@@ -169,6 +169,7 @@ SettingList options_of(TraceArguments& a) {
                 {.name = "any-hit", .help = "stop at any hit instead of looking for the nearest: for shadow rays"});
     add_double_sided(list, a.double_sided, "");
     add_file(list, a.stats, {.name = "stats", .help = "also write times and memory as JSON"});
+    add_scene(list, a);
     add_setting(list, a.repeat,
                 {.name = "repeat",
                  .help = "for measuring: trace 2 or more times after one that warms up; times are medians",

@@ -34,7 +34,7 @@ struct CompareArguments : PictureArguments {
     std::vector<GivenOption> given;  ///< of the picture's
 };
 
-struct TraceArguments {
+struct TraceArguments : SceneArguments {
     std::string scene;
     std::filesystem::path rays, hits, stats, counters;
     bool any_hit = false, double_sided = false;

@@ -80,6 +80,7 @@ void run_info(const std::string& name) {
     for (const Animation& animation : scene.animations)
         fmt::print("  {}: {}\n", named(animation.name),
                    std::isinf(animation.duration) ? "without end" : fmt::format("{:.3g} s", animation.duration));
+    if (!scene.variants.empty()) fmt::print("variants    {}\n", joined(scene.variants));
     fmt::print("extensions used           {}\n", joined(scene.extensions_used));
     fmt::print("extensions without effect {}\n", joined(scene.extensions_unsupported));
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);

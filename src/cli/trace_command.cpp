@@ -115,7 +115,7 @@ void run_trace(const TraceArguments& a) {
         if (!more.empty()) outputs.push_back(more);
     check_outputs(outputs, {a.scene, a.rays});
     const std::vector<RayRecord> rays = read_rays(a.rays);
-    Scene scene = load_scene(a.scene);
+    Scene scene = load_scene(a.scene, {a.variant, a.point_size.value_or(0)});
     if (a.double_sided) show_both_sides(scene);
     const Moment rest = at_rest(scene);
     const Geometry geometry = flatten(scene, rest);

@@ -1,7 +1,10 @@
 #include "loaders/gltf.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
+#include "base/setting.h"
 #include "base/text.h"
 #include "loaders/gltf_check.h"
 
@@ -16,29 +19,32 @@ void GltfLoader::read_extensions() {
     std::sort(scene.extensions_unsupported.begin(), scene.extensions_unsupported.end());
 }
 
-/// A file may offer its triangles in an extension's compression only, although it does not say that it requires that.
-void GltfLoader::refuse_compressed() {
-    if (compressed > 0 && triangles == 0)
-        fail(
-            "{}: its triangles are compressed with KHR_draco_mesh_compression only, which is not supported; export the "
-            "scene without it",
-            scene.name);
-    if (compressed > 0) ignored["{} primitives dropped that KHR_draco_mesh_compression alone holds"] += compressed;
+void GltfLoader::choose_variant(const std::string& name) {
+    const std::vector<std::string>& all = file.extensions().variants;
+    for (const std::string& variant : all) scene.variants.push_back(printable(variant, 60));
+    if (name.empty() || all.empty()) return;
+    const auto found = std::find(all.begin(), all.end(), name);
+    if (found == all.end())
+        fail("{}: the scene has no variant \"{}\"; choose another {}: {}", scene.name, printable(name, 60),
+             setting::variant, fmt::join(scene.variants, ", "));
+    variant = size_t(found - all.begin());
 }
 
 void GltfLoader::write_notes() {
+    for (const auto& [sentence, count] : file.ignored()) ignored[sentence] += count;
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
 }
 
-Scene load_gltf(const std::filesystem::path& path) {
+Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
     GltfLoader loader(path);
     loader.scene.name = loader.file.name();
     loader.read_extensions();
+    loader.choose_variant(options.variant);
+    loader.point_size = options.point_size;
     loader.read_materials();
     loader.read_nodes();
     loader.read_skins();
     loader.read_animations();
-    loader.refuse_compressed();
     loader.write_notes();
     loader.scene.files = loader.file.files();
     return std::move(loader.scene);

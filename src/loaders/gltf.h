@@ -3,17 +3,16 @@
 
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "loaders/gltf_file.h"
+#include "loaders/load.h"
 #include "scene/scene.h"
 
 namespace peelray {
-
-/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
-using Tally = std::map<std::string, size_t>;
 
 /// Where a material takes its base colour's coordinates from.
 struct UvSource {
@@ -29,24 +28,33 @@ struct GltfLoader {
     Tally ignored;
     std::vector<UvSource> uv_sources;                            ///< per material
     std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
-    size_t compressed = 0;                                       ///< primitives whose positions only Draco's data holds
+    std::optional<size_t> variant;                               ///< that which chooses the primitives' materials
+    float point_size = 0;                                        ///< LoadOptions::point_size
+    std::map<uint32_t, uint32_t> unlit_copies;                   ///< of materials, by those
     uint64_t triangles = 0;                                      ///< in all primitives read so far
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 
-    void read_extensions();          // gltf.cpp
-    void read_skins();               // gltf_animation.cpp
-    void read_animations();          // gltf_animation.cpp
-    void refuse_compressed();        // gltf.cpp
-    void write_notes();              // gltf.cpp
-    void read_materials();           // gltf_material.cpp; adds the default material at the end
-    void read_mesh(uint32_t index);  // gltf_mesh.cpp
+    void read_extensions();                        // gltf.cpp
+    void choose_variant(const std::string& name);  // gltf.cpp
+    void read_skins();                             // gltf_animation.cpp
+    void read_animations();                        // gltf_animation.cpp
+    void write_notes();                            // gltf.cpp
+    void read_materials();                         // gltf_material.cpp; adds the default material at the end
+    /// `scale`: how many world units one of the mesh's is long, for points and lines.
+    void read_mesh(uint32_t index, double scale);  // gltf_mesh.cpp
+    /// Throws Error where these are too many beside those so far.
+    void check_triangles(uint64_t more, const std::string& where) const;
+    /// The same material without light.
+    uint32_t unlit(uint32_t material);  // gltf_material.cpp
+    /// The file's number of a primitive's material, which a variant may choose; −1: the default one.
+    int material_of(uint32_t mesh, size_t primitive) const;
     /// Of a mesh's first primitive, as the file says.
     size_t target_count(uint32_t mesh) const;
     void read_nodes();  // gltf_node.cpp; also reads the meshes, cameras and lights that they show
 };
 
 /// Reads a .gltf or .glb file.
-Scene load_gltf(const std::filesystem::path& path);
+Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace peelray

@@ -86,7 +86,8 @@ class AnimationReader {
         const Node& target = loader_.scene.nodes[size_t(node)];
         channel.node = node;
         if (path == "weights") {
-            const Mesh* mesh = target.mesh < 0 ? nullptr : &loader_.scene.meshes[size_t(target.mesh)];
+            const int shown = shown_mesh(node);
+            const Mesh* mesh = shown < 0 ? nullptr : &loader_.scene.meshes[size_t(shown)];
             size_t targets = 0;
             if (mesh)
                 for (const Primitive& primitive : mesh->primitives)
@@ -107,6 +108,14 @@ class AnimationReader {
         channel.path = path == "translation" ? Path::translation : path == "rotation" ? Path::rotation : Path::scale;
         channel.width = path == "rotation" ? 4 : 3;
         return true;
+    }
+
+    /// The node's mesh, or that of its instances, which come behind it; −1: none.
+    int shown_mesh(int node) const {
+        const std::vector<Node>& all = loader_.scene.nodes;
+        const size_t next = size_t(node) + 1;
+        const bool is_instanced = next < all.size() && all[next].is_instance && all[next].parent == node;
+        return all[is_instanced ? next : size_t(node)].mesh;
     }
 
     void read_keys(const tinygltf::AnimationSampler& sampler, AnimationChannel& channel, const std::string& where) {

@@ -18,10 +18,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 9> supported_extensions = {
-    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",    "KHR_mesh_quantization",      "KHR_texture_transform"};
+constexpr std::array supported_extensions = std::to_array<std::string_view>(
+    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
+     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_transmission",
+     "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume", "KHR_node_visibility",
+     "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
 
 enum class Kind {
     flag,
@@ -30,6 +31,7 @@ enum class Kind {
     number,
     numbers,
     whole,
+    whole_map,
     size,
     index,
     indices,
@@ -70,6 +72,9 @@ Member numbers(const char* key, size_t length) {
 Member whole(const char* key) {
     return {key, Kind::whole};
 }  ///< tinygltf keeps it in an int
+Member whole_map(const char* key) {
+    return {key, Kind::whole_map};
+}
 Member size(const char* key) {
     return {key, Kind::size};
 }  ///< tinygltf keeps it in a size_t
@@ -105,6 +110,39 @@ Member texture(const char* key) {
                   {required(index("index", "textures")), whole("texCoord"),
                    object("extensions", {object("KHR_texture_transform", {numbers("offset", 2), numbers("scale", 2),
                                                                           number("rotation"), whole("texCoord")})})});
+}
+
+/// What EXT_meshopt_compression says of a buffer view or a buffer.
+Member meshopt(const Members& members) {
+    return object("extensions",
+                  {object("EXT_meshopt_compression", members), object("KHR_meshopt_compression", members)});
+}
+
+Members view_members() {
+    return {required(index("buffer", "buffers")), size("byteOffset"), required(size("byteLength")), size("byteStride"),
+            meshopt({required(index("buffer", "buffers")), size("byteOffset"), required(size("byteLength")),
+                     required(size("byteStride")), required(size("count")), required(text("mode")), text("filter")})};
+}
+
+Members primitive_members() {
+    return {
+        or_else(index_map("attributes", "accessors"), json::object()),
+        index("indices", "accessors"),
+        index("material", "materials"),
+        whole("mode"),
+        index_maps("targets", "accessors"),
+        object("extensions",
+               {object("KHR_draco_mesh_compression",
+                       {required(index("bufferView", "bufferViews")), required(whole_map("attributes"))}),
+                object("KHR_materials_variants", {objects("mappings", {required(index("material", "materials")),
+                                                                       required(indices("variants", "variants"))})})})};
+}
+
+Members texture_members() {
+    const Members source = {index("source", "images")};
+    return {index("source", "images"), index("sampler", "samplers"),
+            object("extensions", {object("EXT_texture_webp", source), object("KHR_texture_basisu", source),
+                                  object("EXT_texture_avif", source), object("MSFT_texture_dds", source)})};
 }
 
 Members accessor_members(size_t view_without_bytes) {
@@ -152,20 +190,15 @@ Members file_members(size_t view_without_bytes, size_t no_node) {
                           index("camera", "cameras"), index("skin", "skins"), numbers("matrix", 16),
                           numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3), numbers("weights", 0),
                           object("extensions", {object("KHR_lights_punctual", {index("light", "lights")}),
+                                                object("KHR_node_visibility", {flag("visible")}),
                                                 object("EXT_mesh_gpu_instancing",
                                                        {required(index_map("attributes", "accessors"))})})}),
-        objects("meshes", {text("name"), numbers("weights", 0),
-                           objects("primitives", {or_else(index_map("attributes", "accessors"), json::object()),
-                                                  index("indices", "accessors"), index("material", "materials"),
-                                                  whole("mode"), index_maps("targets", "accessors")})}),
-        objects("materials", material_members()),
-        objects("textures", {index("source", "images"), index("sampler", "samplers")}),
+        objects("meshes", {text("name"), numbers("weights", 0), objects("primitives", primitive_members())}),
+        objects("materials", material_members()), objects("textures", texture_members()),
         objects("images", {text("name"), text("uri"), index("bufferView", "bufferViews")}),
         objects("samplers", {whole("magFilter"), whole("wrapS"), whole("wrapT")}),
-        objects("buffers", {text("uri"), required(size("byteLength"))}),
-        or_else(objects("bufferViews", {required(index("buffer", "buffers")), size("byteOffset"),
-                                        required(size("byteLength")), size("byteStride")}),
-                json::array()),
+        objects("buffers", {text("uri"), required(size("byteLength")), meshopt({flag("fallback")})}),
+        or_else(objects("bufferViews", view_members()), json::array()),
         objects("accessors", accessor_members(view_without_bytes)),
         objects("animations", {text("name"),
                                objects("samplers", {required(index("input", "accessors")),
@@ -181,7 +214,8 @@ Members file_members(size_t view_without_bytes, size_t no_node) {
                             object("orthographic", {or_else(number("xmag"), 1.0), or_else(number("ymag"), 0.0),
                                                     or_else(number("zfar"), 1.0), or_else(number("znear"), 0.0)})}),
         object("extensions",
-               {object("KHR_lights_punctual",
+               {object("KHR_materials_variants", {objects("variants", {required(text("name"))})}),
+                object("KHR_lights_punctual",
                        {objects("lights", {text("name"), required(text("type")), numbers("color", 3),
                                            number("intensity"), number("range"),
                                            or_else(object("spot", {number("innerConeAngle"), number("outerConeAngle")}),
@@ -204,6 +238,8 @@ class Checker {
         const json* extensions = find(root, "extensions");
         const json* lights = extensions ? find(*extensions, "KHR_lights_punctual") : nullptr;
         lengths_["lights"] = length_of(lights ? find(*lights, "lights") : nullptr);
+        const json* variants = extensions ? find(*extensions, "KHR_materials_variants") : nullptr;
+        lengths_["variants"] = length_of(variants ? find(*variants, "variants") : nullptr);
     }
 
     json object(const json& in, const Members& members, const std::string& where) const {
@@ -243,6 +279,9 @@ class Checker {
                 return each(in, where, [&](const json& element) { return number(element, where); });
             case Kind::whole:
                 return whole(in, where, INT_MAX);
+            case Kind::whole_map:
+                return each_value(in, where,
+                                  [](const json& value, const std::string& at) { return whole(value, at, INT_MAX); });
             case Kind::size:
                 return whole(in, where, uint64_t(1) << 53);
             case Kind::index:
@@ -303,9 +342,14 @@ class Checker {
     }
 
     json index_map(const json& in, const char* list, const std::string& where) const {
+        return each_value(in, where, [&](const json& value, const std::string& at) { return index(value, list, at); });
+    }
+
+    template <typename Check>
+    static json each_value(const json& in, const std::string& where, Check check) {
         expect(in.is_object(), in, where, "an object");
         json out = json::object();
-        for (const auto& [key, value] : in.items()) out[key] = index(value, list, where + "." + printable(key, 60));
+        for (const auto& [key, value] : in.items()) out[key] = check(value, where + "." + printable(key, 60));
         return out;
     }
 

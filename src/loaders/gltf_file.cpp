@@ -80,6 +80,8 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     for (const json& node : checked["nodes"])
         nodes_placed_twice_ += node.contains("matrix") &&
                                (node.contains("translation") || node.contains("rotation") || node.contains("scale"));
+    extensions_ = take_extensions(checked);
+    ignored_ = extensions_.ignored;
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);
 }
@@ -119,17 +121,18 @@ void GltfFile::take_uris(json& checked, std::optional<size_t> glb_bytes) {
         const std::string at = where("buffers", buffer_sources_.size());
         BufferSource source{"", buffer["byteLength"].get<size_t>()};
         if (source.length == 0) fail("{}: byteLength is 0, a buffer has at least one byte", at);
+        const bool is_fallback = extensions_.fallback_buffers[buffer_sources_.size()];
+        const bool is_chunk = !buffer.contains("uri") && buffer_sources_.empty() && glb_bytes;
         if (buffer.contains("uri")) {
             source.uri = std::move(buffer["uri"].get_ref<std::string&>());
-            buffer["uri"] = std::to_string(buffer_sources_.size());
-        } else if (!buffer_sources_.empty() || !glb_bytes) {
-            // Legal where nothing reads it, see view(); tinygltf insists on bytes.
-            source = {"", 1, false};
-            buffer["byteLength"] = 1;
-            buffer["uri"] = std::to_string(buffer_sources_.size());
+            source.has_data = !is_fallback;
+        } else if (!is_chunk || (is_fallback && *glb_bytes < source.length)) {
+            source.has_data = false;  // legal where nothing reads it, see bytes_of()
         } else if (*glb_bytes < source.length) {
             fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", at, source.length, *glb_bytes);
         }
+        if (!is_chunk || !source.has_data) buffer["uri"] = std::to_string(buffer_sources_.size());
+        if (!source.has_data) buffer["byteLength"] = 1;  // tinygltf insists on bytes
         buffer_sources_.push_back(std::move(source));
     }
     for (json& image : checked["images"]) {
@@ -188,7 +191,7 @@ Bytes GltfFile::read_uri(const std::string& uri, const std::string& where) {
 /// Exactly byteLength bytes: a file may be longer, tinygltf insists.
 Bytes GltfFile::read_buffer(size_t index) {
     const auto& [uri, length, has_data] = buffer_sources_.at(index);
-    if (!has_data) return Bytes(length);
+    if (!has_data) return Bytes(1);
     Bytes bytes = read_uri(uri, where("buffers", index) + ".uri");
     if (bytes.size() < length)
         fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", where("buffers", index), length,
@@ -197,17 +200,68 @@ Bytes GltfFile::read_buffer(size_t index) {
     return bytes;
 }
 
-std::span<const uint8_t> GltfFile::view(int index) const {
-    const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(index)];
-    const auto buffer = static_cast<size_t>(view.buffer);
+std::span<const uint8_t> GltfFile::bytes_of(const std::string& at, size_t buffer, uint64_t offset,
+                                            uint64_t length) const {
     if (!buffer_sources_[buffer].has_data)
         fail("{}: the buffer has no data: no \"uri\" and no GLB chunk; export the scene uncompressed",
              where("buffers", buffer));
     const std::span<const uint8_t> data = model_.buffers[buffer].data;
-    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-        fail("{}: bytes {} to {} are outside of its buffer of {} bytes", where("bufferViews", size_t(index)),
-             view.byteOffset, view.byteOffset + view.byteLength, data.size());
-    return data.subspan(view.byteOffset, view.byteLength);
+    if (offset > data.size() || length > data.size() - offset)
+        fail("{}: bytes {} to {} are outside of its buffer of {} bytes", at, offset, offset + length, data.size());
+    return data.subspan(offset, length);
+}
+
+std::span<const uint8_t> GltfFile::view(int index) {
+    const auto i = static_cast<size_t>(index);
+    const tinygltf::BufferView& view = model_.bufferViews[i];
+    const auto buffer = static_cast<size_t>(view.buffer);
+    std::optional<GltfExtensions::CompressedView>& compressed = extensions_.compressed_views[i];
+    if (compressed && !decompressed_.contains(i)) {
+        try {
+            decompressed_[i] = decompress(i, *compressed);
+        } catch (const Error&) {
+            if (!has_fallback(buffer)) throw;
+            compressed.reset();
+            ++ignored_["{} compressed buffer views that cannot be decoded read from their uncompressed fallback"];
+        }
+    }
+    if (compressed) return decompressed_[i];
+    return bytes_of(where("bufferViews", i), buffer, view.byteOffset, view.byteLength);
+}
+
+Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& from) const {
+    const std::string at = where("bufferViews", view) + ".extensions";
+    Bytes out = decode_meshopt(bytes_of(at, from.buffer, from.offset, from.length), from.layout, at);
+    const size_t length = model_.bufferViews[view].byteLength;
+    if (out.size() != length)
+        fail("{}: {} elements of {} bytes are not the {} bytes of the buffer view", at, from.layout.count,
+             from.layout.stride, length);
+    return out;
+}
+
+/// Whether a buffer that was passed over has data after all, which is then read.
+bool GltfFile::has_fallback(size_t buffer) {
+    BufferSource& source = buffer_sources_[buffer];
+    if (source.has_data) return true;
+    if (source.uri.empty()) return false;
+    source.has_data = true;
+    model_.buffers[buffer].data = read_buffer(buffer);
+    return true;
+}
+
+double GltfFile::Accessor::largest() const {
+    switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return INT8_MAX;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return UINT8_MAX;
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return INT16_MAX;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return UINT16_MAX;
+        default:
+            return UINT32_MAX;
+    }
 }
 
 GltfFile::Accessor GltfFile::accessor(int index) const {
@@ -227,7 +281,7 @@ GltfFile::Accessor GltfFile::accessor(int index) const {
 }
 
 GltfFile::Elements GltfFile::elements(const std::string& where, int view_index, uint64_t offset, uint64_t count,
-                                      size_t element_size) const {
+                                      size_t element_size) {
     if (static_cast<size_t>(view_index) + 1 >= model_.bufferViews.size()) return {};  // see check_gltf: without bytes
     const std::span<const uint8_t> data = view(view_index);
     const size_t stride_given = model_.bufferViews[static_cast<size_t>(view_index)].byteStride;

@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 
 #include "base/error.h"
 #include "loaders/files.h"
+#include "loaders/gltf_extensions.h"
 
 namespace peelray {
 
@@ -30,6 +32,9 @@ class GltfFile {
     const std::vector<std::filesystem::path>& files() const { return files_; }
     /// All indices in it are in range, and vectors have the format's length or none at all.
     const tinygltf::Model& model() const { return model_; }
+    const GltfExtensions& extensions() const { return extensions_; }
+    /// What reading the file so far had to pass over.
+    const Tally& ignored() const { return ignored_; }
     /// How many nodes have a matrix and a translation, rotation or scale as well, which tinygltf drops.
     size_t nodes_placed_twice() const { return nodes_placed_twice_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
@@ -43,6 +48,7 @@ class GltfFile {
         bool normalized = false;      ///< integers that stand for [0, 1] or [-1, 1]
         bool is_backed = false;       ///< false: no bytes behind it, all of it is zero
         bool is_float() const { return component_type == 5126; }
+        double largest() const;  ///< of its component type, an integer: what stands for 1 if normalised
     };
     /// What an accessor says about itself; its data is not touched.
     Accessor accessor(int index) const;
@@ -50,6 +56,10 @@ class GltfFile {
     std::vector<float> floats(int index);
     /// A scalar accessor of unsigned integers (vertex indices).
     std::vector<uint32_t> integers(int index);
+    /// The bytes of a buffer view, decompressed. Throws Error for what is out of range or has no bytes.
+    std::span<const uint8_t> view(int index);
+    /// Counts the numbers of an accessor that was decoded elsewhere; throws Error when a file's become too many.
+    void spend(const Accessor& accessor);
 
     /// The bytes of an image (external file, data URI or buffer view).
     std::span<const uint8_t> image_bytes(int index);
@@ -71,10 +81,10 @@ class GltfFile {
     void load(const std::string& text, const Glb* glb);
     Bytes read_uri(const std::string& uri, const std::string& where);
     Bytes read_buffer(size_t index);
-    std::span<const uint8_t> view(int index) const;
-    Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count,
-                      size_t element_size) const;
-    void spend(const Accessor& accessor);
+    std::span<const uint8_t> bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length) const;
+    Bytes decompress(size_t view, const GltfExtensions::CompressedView& from) const;
+    bool has_fallback(size_t buffer);
+    Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count, size_t element_size);
     template <typename T, typename Load>
     std::vector<T> read(const tinygltf::Accessor& from, const Accessor& accessor, Load load);
 
@@ -85,7 +95,7 @@ class GltfFile {
     struct BufferSource {
         std::string uri;
         size_t length;
-        bool has_data = true;  ///< false: neither a uri nor a GLB chunk, as the fallback of a compressed file may be
+        bool has_data = true;  ///< false: neither a uri nor a GLB chunk, or a fallback that nobody has needed yet
     };
     std::vector<BufferSource> buffer_sources_;
     struct ImageSource {
@@ -94,6 +104,9 @@ class GltfFile {
     };
     std::vector<ImageSource> image_sources_;
     std::vector<std::optional<Bytes>> loaded_images_;
+    GltfExtensions extensions_;
+    std::map<size_t, Bytes> decompressed_;  ///< by buffer view
+    Tally ignored_;
     size_t nodes_placed_twice_ = 0;
     uint64_t decoded_ = 0;  ///< components decoded so far, see spend()
 };

@@ -225,6 +225,18 @@ class MaterialReader {
 
 }  // namespace
 
+uint32_t GltfLoader::unlit(uint32_t material) {
+    if (scene.materials[material].unlit) return material;
+    const auto [copy, added] = unlit_copies.try_emplace(material, uint32_t(scene.materials.size()));
+    if (added) {
+        Material same = scene.materials[material];
+        same.unlit = true;
+        scene.materials.push_back(std::move(same));
+        uv_sources.push_back(UvSource(uv_sources[material]));
+    }
+    return copy->second;
+}
+
 void GltfLoader::read_materials() {
     for (size_t i = 0; i < file.model().materials.size(); ++i) MaterialReader(*this, i).read();
     Material fallback;

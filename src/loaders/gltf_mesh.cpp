@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "loaders/gltf.h"
+#include "loaders/gltf_draco.h"
 #include "scene/normals.h"
+#include "scene/thicken.h"
 
 namespace peelray {
 
@@ -10,14 +13,30 @@ namespace {
 
 class PrimitiveReader {
   public:
-    PrimitiveReader(GltfLoader& loader, const tinygltf::Primitive& from, std::string where)
-        : loader_(loader), from_(from), where_(std::move(where)) {}
+    /// `material`: the file's number of it, −1: the default one. `radius`: of points and lines; 0: they are left out.
+    PrimitiveReader(GltfLoader& loader, const tinygltf::Primitive& from, int material, float radius, std::string where)
+        : loader_(loader), from_(from), material_(material), radius_(radius), where_(std::move(where)) {}
+
+    /// Takes the geometry from compressed data, as far as that has it, instead of from the accessors.
+    void decompress(const DracoSource& source) {
+        if (from_.mode < TINYGLTF_MODE_TRIANGLES || !has("POSITION")) return;
+        try {
+            draco_.emplace(loader_.file, source, from_, where_);
+            if (!draco_->matches_accessors())
+                ++loader_.ignored
+                      ["{} primitives whose Draco data has other numbers of vertices or triangles than their "
+                       "accessors say: the data counts"];
+        } catch (const Error&) {
+            if (!has_fallback()) throw;
+            ++loader_.ignored["{} primitives whose Draco data cannot be decoded read from their uncompressed fallback"];
+        }
+    }
 
     /// False where the primitive has no triangles to show (points, lines, no positions).
     bool read(Primitive& out) {
         if (from_.mode > TINYGLTF_MODE_TRIANGLE_FAN)
             fail("{}.mode: {} is no primitive mode (0 to 6)", where_, from_.mode);
-        if (from_.mode < TINYGLTF_MODE_TRIANGLES) {
+        if (is_thin() && radius_ == 0) {
             ++loader_.ignored["{} primitives of points or lines dropped"];
             return false;
         }
@@ -25,41 +44,64 @@ class PrimitiveReader {
             ++loader_.ignored["{} primitives without positions dropped"];
             return false;
         }
-        if (is_compressed()) {
-            ++loader_.compressed;
-            return false;
-        }
         out.material =
-            static_cast<uint32_t>(from_.material >= 0 ? size_t(from_.material) : loader_.scene.materials.size() - 1);
+            static_cast<uint32_t>(material_ >= 0 ? size_t(material_) : loader_.file.model().materials.size());
         out.positions = vectors<glm::vec3>("POSITION");
         check_positions(out);
-        read_triangles(out, from_.mode);
-        read_attributes(out);
+        if (is_thin()) {
+            read_thin(out);
+        } else {
+            read_triangles(out, draco_ ? TINYGLTF_MODE_TRIANGLES : from_.mode);
+            read_attributes(out);
+        }
         return true;
     }
 
   private:
-    /// Positions that the file leaves to Draco's data; zeros that morph targets move are something else.
-    bool is_compressed() const {
-        const std::vector<std::string>& used = loader_.file.model().extensionsUsed;
-        return from_.targets.empty() && !loader_.file.accessor(from_.attributes.at("POSITION")).is_backed &&
-               std::find(used.begin(), used.end(), "KHR_draco_mesh_compression") != used.end();
+    bool is_thin() const { return from_.mode < TINYGLTF_MODE_TRIANGLES; }
+
+    /// Points and lines. Those without normals are not lit (glTF 2.0, section 3.7.2.1).
+    void read_thin(Primitive& out) {
+        const std::vector<uint32_t> corners = corners_of(out);
+        const auto mode = static_cast<LineMode>(from_.mode);
+        loader_.check_triangles(thickened_triangles(corners.size(), mode), where_);
+        read_uvs(out);
+        read_colors(out);
+        read_joints(out);
+        read_targets(out);
+        if (!has("NORMAL")) out.material = loader_.unlit(out.material);
+        thicken(out, corners, mode, radius_);
+    }
+
+    bool has_fallback() const {
+        const auto is_backed = [&](int accessor) { return loader_.file.accessor(accessor).is_backed; };
+        return is_backed(from_.attributes.at("POSITION")) && (from_.indices < 0 || is_backed(from_.indices));
     }
 
     bool has(const char* name) const { return from_.attributes.count(name) > 0; }
 
+    GltfFile::Accessor info(const char* name) const {
+        if (draco_ && draco_->has(name)) return draco_->accessor(name);
+        return loader_.file.accessor(from_.attributes.at(name));
+    }
+
     template <typename Vector>
     std::vector<Vector> vectors(const char* name) {
+        if (draco_ && draco_->has(name)) return as_vectors<Vector>(name, info(name), draco_->floats(name));
         return vectors_of<Vector>(from_.attributes.at(name), name);
     }
 
     template <typename Vector>
     std::vector<Vector> vectors_of(int accessor, const char* name) {
-        const GltfFile::Accessor info = loader_.file.accessor(accessor);
+        return as_vectors<Vector>(name, loader_.file.accessor(accessor), loader_.file.floats(accessor));
+    }
+
+    template <typename Vector>
+    std::vector<Vector> as_vectors(const char* name, const GltfFile::Accessor& info,
+                                   const std::vector<float>& values) const {
         constexpr auto components = static_cast<uint32_t>(Vector::length());
         if (info.components != components)
             fail("{}: {} needs {} components, {} has {}", where_, name, components, info.where, info.components);
-        const std::vector<float> values = loader_.file.floats(accessor);
         std::vector<Vector> out(info.count);
         for (size_t i = 0; i < out.size(); ++i)
             for (uint32_t c = 0; c < components; ++c) out[i][static_cast<int>(c)] = values[i * components + c];
@@ -80,9 +122,12 @@ class PrimitiveReader {
         }
     }
 
-    void read_triangles(Primitive& out, int mode) {
+    /// The vertices of the triangles, in the order of the mode.
+    std::vector<uint32_t> corners_of(const Primitive& out) {
         std::vector<uint32_t> corners;
-        if (from_.indices >= 0) {
+        if (draco_) {
+            corners = draco_->corners();
+        } else if (from_.indices >= 0) {
             corners = loader_.file.integers(from_.indices);
             for (size_t i = 0; i < corners.size(); ++i)
                 if (corners[i] >= out.positions.size())
@@ -98,6 +143,11 @@ class PrimitiveReader {
             corners.resize(out.positions.size());
             for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<uint32_t>(i);
         }
+        return corners;
+    }
+
+    void read_triangles(Primitive& out, int mode) {
+        const std::vector<uint32_t> corners = corners_of(out);
         const size_t count = mode == TINYGLTF_MODE_TRIANGLES ? corners.size() / 3
                              : corners.size() < 3            ? 0
                                                              : corners.size() - 2;
@@ -145,7 +195,7 @@ class PrimitiveReader {
 
     void read_colors(Primitive& out) {
         if (!has("COLOR_0")) return;
-        if (loader_.file.accessor(from_.attributes.at("COLOR_0")).components == 3) {
+        if (info("COLOR_0").components == 3) {
             for (const glm::vec3& color : vectors<glm::vec3>("COLOR_0")) out.colors.emplace_back(color, 1.f);
         } else {
             out.colors = vectors<glm::vec4>("COLOR_0");
@@ -175,12 +225,12 @@ class PrimitiveReader {
     }
 
     void read_joint_set(Primitive& out, int set, const char* joints, const char* weights) {
-        const GltfFile::Accessor info = loader_.file.accessor(from_.attributes.at(joints));
+        const GltfFile::Accessor type = info(joints);
         const bool is_unsigned =
-            info.component_type == 5121 || info.component_type == 5123 || info.component_type == 5125;
-        if (!is_unsigned || info.normalized)
-            fail("{}: {} must be unsigned integers, {} are {}components of type {}", where_, joints, info.where,
-                 info.normalized ? "normalized " : "", info.component_type);
+            type.component_type == 5121 || type.component_type == 5123 || type.component_type == 5125;
+        if (!is_unsigned || type.normalized)
+            fail("{}: {} must be unsigned integers, {} are {}components of type {}", where_, joints, type.where,
+                 type.normalized ? "normalized " : "", type.component_type);
         const std::vector<glm::vec4> j = vectors<glm::vec4>(joints), w = vectors<glm::vec4>(weights);
         check_count(joints, j.size(), out);
         check_count(weights, w.size(), out);
@@ -231,7 +281,10 @@ class PrimitiveReader {
 
     GltfLoader& loader_;
     const tinygltf::Primitive& from_;
+    const int material_;
+    const float radius_;
     const std::string where_;
+    std::optional<DracoGeometry> draco_;  ///< none: the accessors hold all
 };
 
 }  // namespace
@@ -241,11 +294,23 @@ size_t GltfLoader::target_count(uint32_t mesh) const {
     return primitives.empty() ? 0 : primitives[0].targets.size();
 }
 
-void GltfLoader::read_mesh(uint32_t index) {
+int GltfLoader::material_of(uint32_t mesh, size_t primitive) const {
+    const std::map<size_t, int>& mapped = file.extensions().variant_materials[mesh][primitive];
+    const auto found = variant ? mapped.find(*variant) : mapped.end();
+    return found != mapped.end() ? found->second : file.model().meshes[mesh].primitives[primitive].material;
+}
+
+void GltfLoader::check_triangles(uint64_t more, const std::string& where) const {
+    if (triangles + more > (uint64_t(1) << 28))
+        fail("{}: more than {} triangles so far; split the scene", where, uint64_t(1) << 28);
+}
+
+void GltfLoader::read_mesh(uint32_t index, double scale) {
     const std::vector<tinygltf::Primitive>& primitives = file.model().meshes[index].primitives;
     Mesh& mesh = scene.meshes[index];
     mesh.name = file.model().meshes[index].name;
     mesh.weights.assign(file.model().meshes[index].weights.begin(), file.model().meshes[index].weights.end());
+    const auto radius = static_cast<float>(scale > 0 ? point_size / 2 / scale : 0);
     const size_t targets = target_count(index);
     if (std::any_of(primitives.begin(), primitives.end(), [&](const auto& p) { return p.targets.size() != targets; }))
         ++ignored
@@ -256,10 +321,11 @@ void GltfLoader::read_mesh(uint32_t index) {
     for (size_t i = 0; i < primitives.size(); ++i) {
         const std::string where = fmt::format("{}.primitives[{}]", file.where("meshes", index), i);
         Primitive out;
-        if (!PrimitiveReader(*this, primitives[i], where).read(out)) continue;
+        PrimitiveReader reader(*this, primitives[i], material_of(index, i), radius, where);
+        if (const auto& draco = file.extensions().draco_sources[index][i]) reader.decompress(*draco);
+        if (!reader.read(out)) continue;
+        check_triangles(out.triangles.size(), where);
         triangles += out.triangles.size();
-        if (triangles > (uint64_t(1) << 28))
-            fail("{}: more than {} triangles so far; split the scene", where, uint64_t(1) << 28);
         mesh.primitives.push_back(std::move(out));
     }
 }

@@ -51,6 +51,12 @@ bool is_placement(const glm::mat4& m) {
     return true;
 }
 
+/// KHR_node_visibility; what hangs below a hidden node is hidden, too, cameras excepted.
+bool is_node_hidden(const tinygltf::Node& node) {
+    const auto found = node.extensions.find("KHR_node_visibility");
+    return found != node.extensions.end() && found->second.Has("visible") && !found->second.Get("visible").Get<bool>();
+}
+
 class NodeReader {
   public:
     explicit NodeReader(GltfLoader& loader)
@@ -107,16 +113,18 @@ class NodeReader {
         node.weights.assign(from.weights.begin(), from.weights.end());
         const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
         check_finite(world, loader_.file.where("nodes", index));
-        if (from.mesh >= 0) node.mesh = show_mesh(from.mesh);
+        const bool is_hidden = is_node_hidden(from) || (parent >= 0 && hidden_[static_cast<size_t>(parent)]);
+        hidden_.push_back(is_hidden);
+        if (from.mesh >= 0 && !is_hidden) node.mesh = show_mesh(from.mesh, world);
         if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
             ++loader_.ignored
                   ["{} nodes with another number of weights than their mesh has morph targets "
                    "(NODE_WEIGHTS_INVALID)"];
         if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
         if (const auto light = from.extensions.find("KHR_lights_punctual");
-            light != from.extensions.end() && light->second.Has("light"))
+            light != from.extensions.end() && light->second.Has("light") && !is_hidden)
             node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
-        const std::vector<glm::mat4> instances = instances_of(index);
+        const std::vector<glm::mat4> instances = is_hidden ? std::vector<glm::mat4>() : instances_of(index);
         loader_.scene.nodes.push_back(std::move(node));
         worlds_.push_back(world);
         const int added = static_cast<int>(worlds_.size()) - 1;
@@ -145,10 +153,6 @@ class NodeReader {
         const tinygltf::Node& from = model_.nodes[index];
         const auto extension = from.extensions.find("EXT_mesh_gpu_instancing");
         if (extension == from.extensions.end() || from.mesh < 0) return {};
-        if (from.skin >= 0) {
-            ++loader_.ignored["{} nodes with a skin and EXT_mesh_gpu_instancing shown once"];
-            return {};
-        }
         const std::string where = loader_.file.where("nodes", index) + ".extensions.EXT_mesh_gpu_instancing";
         std::optional<uint32_t> count;
         const auto read = [&](const char* name, uint32_t components) -> std::vector<float> {
@@ -185,18 +189,22 @@ class NodeReader {
         node.name = loader_.scene.nodes[p].name;
         node.parent = parent;
         node.mesh = std::exchange(loader_.scene.nodes[p].mesh, -1);
+        node.skin = std::exchange(loader_.scene.nodes[p].skin, -1);
         node.weights = loader_.scene.nodes[p].weights;
+        node.is_instance = true;
         for (const glm::mat4& instance : instances) {
             node.local = instance;
             loader_.scene.nodes.push_back(node);
             worlds_.push_back(worlds_[p] * instance);
+            hidden_.push_back(false);
         }
     }
 
-    int show_mesh(int mesh) {
+    int show_mesh(int mesh, const glm::mat4& world) {
         const auto i = static_cast<size_t>(mesh);
         loader_.scene.meshes.resize(model_.meshes.size());
-        if (!read_[i]) loader_.read_mesh(static_cast<uint32_t>(i));
+        const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(world))));
+        if (!read_[i]) loader_.read_mesh(static_cast<uint32_t>(i), scale);
         read_[i] = true;
         return mesh;
     }
@@ -267,6 +275,7 @@ class NodeReader {
     GltfLoader& loader_;
     const tinygltf::Model& model_;
     std::vector<bool> visited_, read_;
+    std::vector<bool> hidden_;  ///< of Scene::nodes
     std::vector<glm::mat4> worlds_;
 };
 

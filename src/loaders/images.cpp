@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "loaders/webp.h"
 
 // The decoder is compiled into this file alone: no other module sees stb's names.
 #define STB_IMAGE_IMPLEMENTATION
@@ -30,7 +31,7 @@ namespace {
 
 [[noreturn]] void fail_image(const std::string& where, size_t size) {
     const char* reason = stbi_failure_reason();
-    fail("{}: {} bytes that are no PNG or JPEG image ({}); repair or re-export the image", where, size,
+    fail("{}: {} bytes that are no PNG, JPEG or WebP image ({}); repair or re-export the image", where, size,
          reason ? reason : "unknown");
 }
 
@@ -49,6 +50,7 @@ void check_image(std::span<const uint8_t> bytes, const std::string& where) {
     int width = 0, height = 0, channels = 0;
     if (bytes.empty()) fail("{}: the image is empty", where);
     if (bytes.size() > INT_MAX) fail("{}: the image has {} bytes, more than 2 GiB", where, bytes.size());
+    if (is_webp(bytes)) return check_webp(bytes, where);
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
         fail_image(where, bytes.size());
     if (width <= 0 || height <= 0 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
@@ -57,6 +59,7 @@ void check_image(std::span<const uint8_t> bytes, const std::string& where) {
 }
 
 Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
+    if (is_webp(bytes)) return decode_webp(bytes, where);
     check_image(bytes, where);
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
@@ -78,7 +81,6 @@ const char* foreign_image_type(std::span<const uint8_t> bytes) {
     const std::string_view second = text.size() < 12 ? "" : text.substr(4, 4), third = text.substr(0, 12);
     if (text.starts_with("\xABKTX 20")) return "KTX2";
     if (text.starts_with("\xABKTX 11")) return "KTX";
-    if (text.starts_with("RIFF") && third.ends_with("WEBP")) return "WebP";
     if (second == "ftyp") return third.substr(8).starts_with("avi") ? "AVIF" : "HEIF";
     if (text.starts_with("DDS ")) return "DDS";
     if (text.starts_with("sB")) return "Basis";

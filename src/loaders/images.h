@@ -1,4 +1,4 @@
-// Decodes PNG, JPEG, BMP, TGA, GIF images to 8-bit RGBA.
+// Decodes PNG, JPEG, WebP, BMP, TGA, GIF images to 8-bit RGBA.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,7 +16,7 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where);
 /// Checks that the bytes begin like an image that decode_image reads, without decoding the pixels.
 void check_image(std::span<const uint8_t> bytes, const std::string& where);
 
-/// The type of an image that decode_image does not read, such as "KTX2" or "WebP", by its first bytes; nullptr: none
+/// The type of an image that decode_image does not read, such as "KTX2" or "AVIF", by its first bytes; nullptr: none
 /// that is known.
 const char* foreign_image_type(std::span<const uint8_t> bytes);
 

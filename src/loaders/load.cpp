@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/setting.h"
 #include "base/text.h"
 #include "loaders/files.h"
 #include "loaders/gltf.h"
@@ -18,9 +19,9 @@ namespace peelray {
 
 namespace {
 
-Scene load_file(const std::filesystem::path& path) {
+Scene load_file(const std::filesystem::path& path, const LoadOptions& options) {
     const std::string extension = lower_extension(path);
-    if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
+    if (extension == ".gltf" || extension == ".glb") return load_gltf(path, options);
     if (extension == ".obj") return load_obj(path);
     if (extension == ".ply") return load_ply(path);
     if (extension == ".stl") return load_stl(path);
@@ -40,12 +41,21 @@ bool has_triangles(const Scene& scene) {
 
 }  // namespace
 
-Scene load_scene(const std::string& name) {
+Scene load_scene(const std::string& name, const LoadOptions& options) {
     constexpr std::string_view prefix = "builtin:";
-    if (name.starts_with(prefix)) return make_builtin(std::string_view(name).substr(prefix.size()));
+    const auto refuse_variant = [&](const Scene& scene) {
+        if (!options.variant.empty() && scene.variants.empty())
+            fail("{}: the scene has no variants of its materials; leave out {}", scene.name, setting::variant);
+    };
+    if (name.starts_with(prefix)) {
+        Scene scene = make_builtin(std::string_view(name).substr(prefix.size()));
+        refuse_variant(scene);
+        return scene;
+    }
     const std::filesystem::path path(name);
     try {
-        Scene scene = load_file(path);
+        Scene scene = load_file(path, options);
+        refuse_variant(scene);
         if (!has_triangles(scene)) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
         return scene;
     } catch (const std::bad_alloc&) {

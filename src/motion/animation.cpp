@@ -192,6 +192,8 @@ Motion motion_of(const Scene& scene, const std::string& which) {
             (channel.path == Path::weights ? motion.morphs : motion.moves)[node] = true;
             if (channel.path == Path::scale) motion.scales[node] = true;
         }
+    for (size_t i = 0; i < scene.nodes.size(); i++)
+        if (scene.nodes[i].is_instance) motion.morphs[i] = motion.morphs[size_t(scene.nodes[i].parent)];
     motion.generates = generates(scene, chosen);
     if (!motion.generates) return motion;
     for (const Water& water : scene.generated.waters)

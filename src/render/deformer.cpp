@@ -4,6 +4,7 @@
 
 #include "render/base_colors.h"
 #include "render/transforms.h"
+#include "scene/deform.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -26,9 +27,8 @@ std::vector<glm::mat4> matrices_of(const Scene& scene, const Assembly::Piece& pl
                                    const std::vector<glm::mat4>& worlds) {
     std::vector<glm::mat4> out = {worlds[size_t(place.node)]};
     if (!is_skinned(scene, place)) return out;
-    const Skin& skin = scene.skins[size_t(node_of(scene, place).skin)];
-    for (size_t i = 0; i < skin.joints.size(); i++)
-        out.push_back(worlds[size_t(skin.joints[i])] * skin.inverse_bind[i]);
+    const std::vector<glm::mat4> joints = joint_matrices(scene, node_of(scene, place), worlds, out[0]);
+    out.insert(out.end(), joints.begin(), joints.end());
     return out;
 }
 

@@ -21,14 +21,6 @@ void morph(const Primitive& primitive, std::span<const float> weights, Deformed&
     }
 }
 
-/// Of each joint: from the mesh as it was bound to where the joint is now.
-std::vector<glm::mat4> joint_matrices(const Skin& skin, std::span<const glm::mat4> worlds) {
-    std::vector<glm::mat4> out;
-    for (size_t i = 0; i < skin.joints.size(); i++)
-        out.push_back(worlds[size_t(skin.joints[i])] * skin.inverse_bind[i]);
-    return out;
-}
-
 glm::mat4 blended(const JointWeights& vertex, const std::vector<glm::mat4>& joints, const glm::mat4& otherwise) {
     glm::mat4 sum(0);
     float weight = 0;
@@ -42,13 +34,28 @@ glm::mat4 blended(const JointWeights& vertex, const std::vector<glm::mat4>& join
 
 }  // namespace
 
+std::vector<glm::mat4> joint_matrices(const Scene& scene, const Node& node, std::span<const glm::mat4> worlds,
+                                      const glm::mat4& world) {
+    const Skin& skin = scene.skins[size_t(node.skin)];
+    glm::mat4 from_parent(1);
+    if (node.is_instance) {
+        // Where the parent's space is flat there is no way back into it: the skin stays where its joints are.
+        const glm::mat4& parent = worlds[size_t(node.parent)];
+        if (glm::determinant(parent) != 0) from_parent = world * glm::inverse(parent);
+    }
+    std::vector<glm::mat4> out;
+    for (size_t i = 0; i < skin.joints.size(); i++)
+        out.push_back(from_parent * worlds[size_t(skin.joints[i])] * skin.inverse_bind[i]);
+    return out;
+}
+
 Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive, std::span<const float> weights,
                 std::span<const glm::mat4> worlds, const glm::mat4& world) {
     Deformed out;
     morph(primitive, weights, out);
     const bool skinned = node.skin >= 0 && !primitive.joints.empty();
     std::vector<glm::mat4> joints;
-    if (skinned) joints = joint_matrices(scene.skins[size_t(node.skin)], worlds);
+    if (skinned) joints = joint_matrices(scene, node, worlds, world);
     glm::mat4 matrix = world;
     NormalTransform to_normal(world);
     for (size_t i = 0; i < out.positions.size(); i++) {

@@ -21,6 +21,11 @@ inline bool is_rigid(const Primitive& primitive, const Node& node) {
 /// A primitive with other vertices.
 Primitive with_surface(const Primitive& primitive, const Moment::Surface& surface);
 
+/// Of each joint of a node's skin: from the mesh as it was bound to where the joint is now. An instance's are moved
+/// from its parent to itself. `worlds`: of all nodes; `world`: the node's own.
+std::vector<glm::mat4> joint_matrices(const Scene& scene, const Node& node, std::span<const glm::mat4> worlds,
+                                      const glm::mat4& world);
+
 /// Morphs (glTF 2.0, section 3.7.2.2), then moves: by the skin's joints (section 3.7.3.3), or by the node where a
 /// vertex has none. `worlds`: of all nodes. Normals come out unit; those of flat primitives are the moved triangles'
 /// own.

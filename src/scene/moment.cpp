@@ -33,7 +33,8 @@ Moment at_rest(const Scene& scene) {
 }
 
 const std::vector<float>& weights_of(const Scene& scene, const Moment& moment, size_t node) {
-    const std::vector<float>& own = moment.weights[node];
+    const Node& shown = scene.nodes[node];
+    const std::vector<float>& own = moment.weights[shown.is_instance ? size_t(shown.parent) : node];
     return own.empty() ? scene.meshes[size_t(scene.nodes[node].mesh)].weights : own;
 }
 

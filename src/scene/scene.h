@@ -126,6 +126,8 @@ struct Node {
     std::vector<float> weights;  ///< of its mesh's morph targets; empty: the mesh's own
     int source = -1;             ///< glTF: index into the file's own nodes (animations and skins speak of those);
                                  ///< -1: one of a node's instances
+    bool is_instance =
+        false;  ///< one of those that its parent is shown as, moved from there by `local`; so is its skin
 };
 
 /// Where light comes from on a miss.
@@ -167,6 +169,7 @@ struct Scene {
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     Generated generated;                              ///< what is computed for every moment, if anything is
+    std::vector<std::string> variants;                ///< names; one chose the materials if it was asked for
     std::vector<std::string> extensions_used;         ///< as the file says, sorted
     std::vector<std::string> extensions_unsupported;  ///< used, not required, and without effect here
     std::vector<std::string>

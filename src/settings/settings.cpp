@@ -64,6 +64,7 @@ SettingList picture_settings(PictureArguments& a, bool one) {
     add_light(list, a);
     if (one) add_tracer(list, a.tracing);
     add_effects(list, a);
+    add_scene(list, a);
     if (one) add_hit(list, a.tracing);
     add_tracing(list, a.tracing);
     add_measuring(list, a);

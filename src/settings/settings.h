@@ -196,6 +196,28 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
     add_block(list, a.block, {.group = group, .help = "pixels per block with --traversal two-level, 2 to 32 a side"});
 }
 
+/// What is read of a file in one of several ways.
+struct SceneArguments {
+    std::string variant;              ///< of its materials
+    std::optional<float> point_size;  ///< world units; none: points and lines are left out
+};
+
+inline void add_scene(SettingList& list, SceneArguments& a) {
+    add_setting(list, a.variant,
+                {.name = "variant",
+                 .group = "Scene",
+                 .help = "the materials that a glTF file has under that name, see 'peelray info SCENE'",
+                 .form = "NAME"});
+    add_setting(
+        list, a.point_size,
+        {.name = "point-size",
+         .group = "Scene",
+         .help = "diameter, in world units, of the balls and tubes that show a glTF file's points and lines; "
+                 "default: they are left out",
+         .limits = {
+             .least = 0, .open = true, .fault = "points of size {} cannot be seen", .choose = "a diameter above 0"}});
+}
+
 /// What is traced, and of what.
 struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
@@ -265,7 +287,7 @@ inline void add_device(SettingList& list, DeviceArguments& a) {
 }
 
 /// What a picture shows and how it is made.
-struct PictureArguments : ViewArguments, LightArguments, EffectArguments {
+struct PictureArguments : ViewArguments, LightArguments, EffectArguments, SceneArguments {
     std::string scene;  ///< a file or builtin:NAME
     glm::uvec2 size{1280, 1024};
     TracingArguments tracing;

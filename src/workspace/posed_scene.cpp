@@ -36,7 +36,8 @@ Environment choose_environment(const PictureArguments& a, const Scene& scene) {
 }  // namespace
 
 PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : settings_(settings) {
-    auto scene = std::make_unique<Scene>(load_scene(settings.scene));
+    auto scene =
+        std::make_unique<Scene>(load_scene(settings.scene, {settings.variant, settings.point_size.value_or(0)}));
     animation_ = choose_animation(settings, *scene, notes);
     if (!animation_.empty()) complete_targets(*scene);
     framed_ = animation_.empty() ? peelray::bounds(*scene, at_rest(*scene)) : bounds_over(*scene, animation_);

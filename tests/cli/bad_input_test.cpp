@@ -152,6 +152,21 @@ TEST_F(BadInput, ExtensionsAndForeignFolders) {
     expect_bad_scene("inside/bad.gltf", "refused to read");
 }
 
+TEST_F(BadInput, VariantsThatTheSceneDoesNotHave) {
+    auto gltf = square_gltf();
+    gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "day"}}, {{"name", "night"}}};
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    put("cube.obj", kCube);
+    put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
+    for (const auto& [scene, says] : {std::pair(in("square.gltf"), "choose another --variant: day, night"),
+                                      std::pair(in("cube.obj"), "leave out --variant")}) {
+        expect_refused(run({"render", scene, "-o", out("a.png"), "--variant", "dusk"}), 1, says);
+        expect_refused(run({"trace", scene, "--rays", in("rays.npy"), "--out", out("h.npy"), "--variant", "dusk"}), 1,
+                       says);
+    }
+}
+
 TEST_F(BadInput, NamesWithControlCharacters) {
     put("cube.obj", kCube);
     expect_refused(run({"info", in("a\nb\x1b[2J.obj")}), 1, "no such file");

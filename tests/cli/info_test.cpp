@@ -48,6 +48,14 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
                           "extensions without effect KHR_materials_sheen"});
 }
 
+TEST_F(InfoCommand, Variants) {
+    auto gltf = square_gltf();
+    gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "day"}}, {{"name", "at night"}}};
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    expect_says(run({"info", in("square.gltf")}).out, {"variants day, at night"});
+}
+
 TEST_F(InfoCommand, MasksAndBlending) {
     auto gltf = square_gltf();
     gltf["materials"] = {{{"name", "leaf"}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}},

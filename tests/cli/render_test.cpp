@@ -314,6 +314,26 @@ TEST_F(RenderCommand, EffectsBouncesSamplesMaterials) {
     EXPECT_NE(bytes(in("cube.obj"), {"--floor"}), cube);
 }
 
+TEST_F(RenderCommand, VariantsOfMaterials) {
+    auto gltf = square_gltf();
+    gltf["materials"] = nlohmann::json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}},
+                                                  {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 1, 1]}}])");
+    gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "day"}}, {{"name", "night"}}};
+    auto& primitive = gltf["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] =
+        nlohmann::json::parse(R"([{"material": 1, "variants": [1]}])");
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    const std::string plain = bytes(in("square.gltf"));
+    EXPECT_EQ(bytes(in("square.gltf"), {"--variant", "day"}), plain);
+    const std::string night = bytes(in("square.gltf"), {"--variant", "night"});
+    EXPECT_NE(night, plain);
+    primitive["material"] = 1;
+    put("square.gltf", gltf.dump());
+    EXPECT_EQ(bytes(in("square.gltf")), night);
+}
+
 TEST_F(RenderCommand, HitTestsAndResolutions) {
     for (const std::string hit : {"exact", "planar"})
         for (const std::string n : {"16", "128"})

@@ -133,6 +133,14 @@ def path_faults(root):
     return faults
 
 
+def extension_faults(root):
+    """glTF extensions that the loader supports and docs/scenes.md does not name."""
+    checks = (root / "src/loaders/gltf_check.cpp").read_text()
+    names = re.findall(r'"((?:KHR|EXT)_\w+)"', checks[checks.index("supported_extensions"):].split(";")[0])
+    text = (root / "docs/scenes.md").read_text()
+    return [f"scenes.md: {name} is read and not named" for name in names if not re.search(rf"\b{name}\b", text)]
+
+
 def help_of_program():
     """The options of each command, by its help pages."""
     page = lambda *command: subprocess.run([PROGRAM, *command, "--help"], capture_output=True, text=True, check=True).stdout
@@ -196,6 +204,9 @@ class Documents(unittest.TestCase):
     def test_links(self):
         self.assertEqual(link_faults(ROOT), [])
 
+    def test_extensions(self):
+        self.assertEqual(extension_faults(ROOT), [])
+
     def test_named_documents(self):
         self.assertEqual(named_faults(ROOT), [])
 
@@ -254,6 +265,14 @@ class Faults(unittest.TestCase):
                          ["docs/a.md: PLAN.md: no such document", "docs/a.md: other.md: no such document",
                           "docs/a.md: PLAN: no such document", "src/a.cpp: docs/b.md: no such document",
                           "src/a.cpp: DESIGN.md: no such document", "src/a.cpp: docs/a.md has no 'Some section'"])
+
+    def test_extensions(self):
+        (self.root / "src/loaders").mkdir()
+        self.write("src/loaders/gltf_check.cpp",
+                   'auto supported_extensions = {"KHR_a", "EXT_b",\n  "KHR_materials"};\nMember x("KHR_c");\n')
+        self.write("docs/scenes.md", "# A\n\nEXT_b, KHR_materials_x\n")
+        self.assertEqual(extension_faults(self.root),
+                         ["scenes.md: KHR_a is read and not named", "scenes.md: KHR_materials is read and not named"])
 
     def test_paths(self):
         self.write("docs/a.md", "# A\n\n`src/a.*`, `a.cpp`, `src/b.cpp`, `b.comp`\n\n    `src/code.cpp`\n")

@@ -13,7 +13,9 @@
 
 int main(int count, char** words) {
     if (count < 3) {
-        fmt::print(stderr, "usage: {} FORMAT COUNT [SEED [FOLDER]]; formats: obj mtl ply stl off gltf glb\n", words[0]);
+        fmt::print(stderr,
+                   "usage: {} FORMAT COUNT [SEED [FOLDER]]; formats: obj mtl ply stl off gltf glb draco meshopt\n",
+                   words[0]);
         return 2;
     }
     try {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 
+#include "loaders/compressed_files.h"
 #include "loaders/load.h"
 #include "loaders/scene_files.h"
 
@@ -84,11 +85,7 @@ std::vector<Sample> glb_samples() {
     gltf["buffers"] = json::array({{{"byteLength", bytes.size()}}});
     gltf["bufferViews"] =
         json::array({{{"buffer", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}});
-    std::string text = gltf.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const auto size = [](size_t n) { return static_cast<uint32_t>(n); };
-    return {{"a.glb", "glTF" + pack<uint32_t>({2, size(28 + text.size() + bytes.size()), size(text.size())}) + "JSON" +
-                          text + pack<uint32_t>({size(bytes.size())}) + std::string("BIN\0", 4) + bytes}};
+    return {{"a.glb", glb_of(gltf, bytes)}};
 }
 
 std::vector<Sample> gltf_samples() {
@@ -98,6 +95,59 @@ std::vector<Sample> gltf_samples() {
     primitive(gltf)["material"] = 0;
     gltf["nodes"][0]["translation"] = {1, 2, 3};
     return {{"a.gltf", gltf.dump(1)}};
+}
+
+std::vector<Sample> draco_samples() {
+    std::vector<Sample> out;
+    for (const DracoMethod method : {DracoMethod::sequential, DracoMethod::edgebreaker, DracoMethod::valence})
+        for (const int bits : {0, 11}) {
+            const DracoWriter writer = grid_writer(Grid(5), bits);
+            out.push_back({"a.gltf", writer.stream(method),
+                           [writer](const std::string& stream) { return writer.file(stream).dump(); }});
+        }
+    return out;
+}
+
+/// The view of an accessor compressed: what is changed are the compressed bytes.
+Sample meshopt_sample(json gltf, size_t accessor, const std::string& bytes, size_t stride, const char* mode,
+                      const char* filter) {
+    compress_view(gltf, accessor, bytes, stride, mode, filter);
+    return {"a.gltf", meshopt_stream(bytes, stride, mode), [gltf, accessor](const std::string& stream) {
+                json changed = gltf;
+                json& view = changed["bufferViews"][changed["accessors"][accessor]["bufferView"].get<size_t>()];
+                json& extension = view["extensions"]["EXT_meshopt_compression"];
+                extension["byteLength"] = stream.size();
+                changed["buffers"][extension["buffer"].get<size_t>()] = {{"byteLength", stream.size()},
+                                                                         {"uri", data_uri(stream)}};
+                return changed.dump();
+            }};
+}
+
+std::vector<Sample> meshopt_samples() {
+    const Grid grid(9);
+    const auto count = grid.vertices();
+    json gltf = square();
+    json& attributes = primitive(gltf)["attributes"];
+    const size_t positions = add_accessor(gltf, pack(grid.positions), 5126, "VEC3", count);
+    attributes["POSITION"] = positions;
+    std::vector<float> normals, exponents = grid.positions;
+    for (size_t i = 0; i < count; ++i)
+        normals.insert(normals.end(), {grid.normals[3 * i], grid.normals[3 * i + 1], grid.normals[3 * i + 2], 0});
+    const std::string octahedral = meshopt_filtered(normals, 8, "OCTAHEDRAL", 12);
+    const size_t normal = add_accessor(gltf, octahedral, 5122, "VEC3", count, true);
+    gltf["bufferViews"].back()["byteStride"] = 8;
+    attributes["NORMAL"] = normal;
+    const size_t indices = add_accessor(gltf, pack(grid.corners), 5125, "SCALAR", grid.corners.size());
+    primitive(gltf)["indices"] = indices;
+    Sample version_1 = meshopt_sample(gltf, positions, pack(grid.positions), 12, "ATTRIBUTES", "NONE");
+    version_1.bytes = meshopt_stream_1(pack(grid.positions), 12, {2, 1, 0}, {0, 1, 3, 0, 0, 1, 3, 0, 0, 1, 3, 0});
+    return {version_1,
+            meshopt_sample(gltf, positions, pack(grid.positions), 12, "ATTRIBUTES", "NONE"),
+            meshopt_sample(gltf, positions, meshopt_filtered(exponents, 12, "EXPONENTIAL", 15), 12, "ATTRIBUTES",
+                           "EXPONENTIAL"),
+            meshopt_sample(gltf, normal, octahedral, 8, "ATTRIBUTES", "OCTAHEDRAL"),
+            meshopt_sample(gltf, indices, pack(grid.corners), 4, "TRIANGLES", "NONE"),
+            meshopt_sample(gltf, indices, pack(grid.corners), 4, "INDICES", "NONE")};
 }
 
 }  // namespace
@@ -167,14 +217,16 @@ std::string Mutation::operator()(std::string bytes) {
 }
 
 const std::vector<std::string>& mutation_formats() {
-    static const std::vector<std::string> names = {"obj", "mtl", "ply", "stl", "off", "gltf", "glb"};
+    static const std::vector<std::string> names = {"obj",  "mtl", "ply",   "stl",    "off",
+                                                   "gltf", "glb", "draco", "meshopt"};
     return names;
 }
 
 const std::vector<Sample>& samples(const std::string& format) {
     static const std::map<std::string, std::vector<Sample>> all = {
-        {"obj", {{"a.obj", obj_text}}}, {"mtl", {{"m.mtl", mtl_text}}}, {"ply", ply_samples()}, {"stl", stl_samples()},
-        {"off", off_samples()},         {"gltf", gltf_samples()},       {"glb", glb_samples()}};
+        {"obj", {{"a.obj", obj_text}}}, {"mtl", {{"m.mtl", mtl_text}}}, {"ply", ply_samples()},
+        {"stl", stl_samples()},         {"off", off_samples()},         {"gltf", gltf_samples()},
+        {"glb", glb_samples()},         {"draco", draco_samples()},     {"meshopt", meshopt_samples()}};
     return all.at(format);
 }
 
@@ -189,7 +241,7 @@ MutationResult load_mutations(const std::string& format, uint64_t count, uint64_
     for (uint64_t i = 0; i < count; ++i) {
         const Sample& sample = samples(format)[i % samples(format).size()];
         // From the number alone, so that one that went wrong can be made again.
-        write(sample.name, Mutation(seed + i)(sample.bytes));
+        write(sample.name, sample.file(Mutation(seed + i)(sample.bytes)));
         try {
             flatten(load_scene(folder + "/" + (format == "mtl" ? "model.obj" : sample.name)));
             ++result.loaded;

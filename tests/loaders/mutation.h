@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,13 @@ class Mutation {
 /// A file to change, and the name under which it is loaded.
 struct Sample {
     std::string name, bytes;
+    /// Makes the file from changed bytes where those are only a part of it, so that the changes reach what the file
+    /// wraps: all lengths are right. Empty: they are the file.
+    std::function<std::string(const std::string&)> wrapped = {};
+    std::string file(const std::string& changed) const { return wrapped ? wrapped(changed) : changed; }
 };
 
-/// Formats: obj, mtl, ply, stl, off, gltf, glb.
+/// Formats: obj, mtl, ply, stl, off, gltf, glb, draco, meshopt.
 const std::vector<std::string>& mutation_formats();
 /// Valid files of a format, each with a surface. Throws std::out_of_range for another one.
 const std::vector<Sample>& samples(const std::string& format);

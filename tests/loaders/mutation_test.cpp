@@ -15,7 +15,7 @@ TEST(Mutation, SamplesAreValid) {
     folder.write("t.png", tiny_png());
     for (const std::string& format : mutation_formats())
         for (const Sample& sample : samples(format)) {
-            const std::string file = folder.write(sample.name, sample.bytes);
+            const std::string file = folder.write(sample.name, sample.file(sample.bytes));
             if (format != "mtl") {
                 EXPECT_FALSE(flatten(load_scene(file)).triangles.empty()) << sample.name;
             }

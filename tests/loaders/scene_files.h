@@ -97,6 +97,10 @@ inline Scene load(const TempFolder& folder, const json& gltf) {
     return load_scene(folder.write("scene.gltf", gltf.dump()));
 }
 
+inline const Primitive& only_primitive(const Scene& scene) {
+    return scene.meshes.at(0).primitives.at(0);
+}
+
 /// The error's line; a test failure where nothing is thrown or the message is no single line.
 inline std::string error_of(const std::string& file) {
     try {

@@ -1,0 +1,42 @@
+// What a glTF file's extensions say of its buffers, meshes and textures: what tinygltf would decode itself, unchecked
+// (it is built with Draco), or would not keep.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "loaders/meshopt.h"
+
+namespace peelray {
+
+/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
+using Tally = std::map<std::string, size_t>;
+
+/// KHR_draco_mesh_compression of a primitive.
+struct DracoSource {
+    int view = -1;                               ///< the buffer view that holds the stream
+    std::map<std::string, uint32_t> attributes;  ///< the stream's own numbers ("unique ids"), by glTF's names
+};
+
+struct GltfExtensions {
+    struct CompressedView {
+        size_t buffer = 0, offset = 0, length = 0;
+        MeshoptLayout layout;
+    };
+    std::vector<std::optional<CompressedView>> compressed_views;         ///< one per buffer view
+    std::vector<bool> fallback_buffers;                                  ///< one per buffer: nothing but fallbacks
+    std::vector<std::vector<std::optional<DracoSource>>> draco_sources;  ///< one per mesh, in it one per primitive
+    std::vector<std::string> variants;                                   ///< names, of KHR_materials_variants
+    std::vector<std::vector<std::map<size_t, int>>> variant_materials;   ///< per mesh and primitive: by variant
+    Tally ignored;
+};
+
+/// Takes the extensions out of JSON that check_gltf() has checked. A texture's `source` becomes that of the format
+/// which is read, where an extension offers several.
+GltfExtensions take_extensions(nlohmann::json& checked);
+
+}  // namespace peelray
