@@ -21,12 +21,16 @@ struct GpuMaterial {
     float thickness;     ///< of a volume, world units; rays measure it, cube maps cannot
     float alpha;         ///< of the base colour
     float alpha_cutoff;  ///< 0: opaque
+    vec3 f0;             ///< reflectance of the dielectric part at normal incidence; one value but for MATERIAL_SCHLICK
+    float f90;           ///< MATERIAL_SCHLICK: at grazing angles
+    vec3 fresnel_fit;    ///< else: its reflectance is about f0 and these times the powers of split_sum.h
 };
-SHARED_SIZE(GpuMaterial, 72);
+SHARED_SIZE(GpuMaterial, 100);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
-#define MATERIAL_COLORED 4u       // vertices have colours
-#define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
+#define MATERIAL_COLORED 4u        // vertices have colours
+#define MATERIAL_SCHLICK 8u        // reflectance between f0 and f90; else by the index of refraction
+#define MATERIAL_SINGLE_SIDED 16u  // rays from behind pass
 
 struct GpuTexture {
     uint offset;  ///< first texel in the texel buffer

@@ -18,6 +18,7 @@ BUFFER(writeonly, 15, PathNode, nodes)
 BUFFER(readonly, 16, uint, triangle_objects)
 BUFFER(readonly, 17, GpuObject, objects)
 BUFFER(readonly, 18, uvec2, probes)
+BUFFER(readonly, 19, vec4, split_sum)
 #define CUBE_TEXEL(index) unpackTexel(probes[index])
 #include "cubemap/cubemap.glsl"
 #include "path/frame.glsl"
@@ -26,6 +27,7 @@ BUFFER(readonly, 18, uvec2, probes)
 GpuObject object;  // of this thread's hit
 
 /// A cube map holds the whole lobe, blurred: one lookup along the mirror direction.
+bool samplesMicrofacets() { return false; }
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) { return s.normal; }
 float tracedPart(GpuMaterial m) { return 1.0; }
 void decide(inout Branch branch, vec3 path_weight, uint effect) {
@@ -54,12 +56,14 @@ void main() {
     const RayState state = states[i];
     const Hit hit = hits[i];
     vec3 radiance;
+    uint flags = 0u;
     if (hit.triangle == NO_TRIANGLE) {
         radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
     } else {
         object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
         const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
         const GpuMaterial m = materials[s.material];
+        flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
         radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
         radiance += reflection.weight * seen(reflection, m.roughness);
@@ -69,5 +73,5 @@ void main() {
         if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
         radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
     }
-    nodes[i] = PathNode(radiance, 0u, hit.triangle != NO_TRIANGLE ? NODE_SURFACE : 0u);
+    nodes[i] = PathNode(radiance, 0u, flags);
 }

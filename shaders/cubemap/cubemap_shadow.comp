@@ -17,6 +17,7 @@ BUFFER(, 14, PathNode, nodes)
 BUFFER(readonly, 15, GpuLight, lights)
 BUFFER(readonly, 16, GpuShadowMap, shadow_maps)
 BUFFER(readonly, 17, float, shadow_depths)
+BUFFER(readonly, 18, vec4, split_sum)
 #define SHADOW_DEPTH(index) shadow_depths[index]
 #include "cubemap/cubemap.glsl"
 #include "cubemap/shadow_map.glsl"

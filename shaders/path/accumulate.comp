@@ -5,6 +5,7 @@
 #include "path/frame.h"
 #include "path/path_params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool has_unlit = false;  // the scene has unlit materials
 PARAMS(AccumulateParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, PathNode, nodes)
@@ -14,10 +15,20 @@ BUFFER(readonly, 4, vec3, shadow_light)
 BUFFER(readonly, 5, uint, queue)
 BUFFER(, 6, vec4, picture)
 BUFFER(writeonly, 7, uint, encoded)
+BUFFER(, 8, vec3, unlit)
 #include "view/camera.glsl"
 #include "path/gather.glsl"
 #include "path/shading.glsl"
 #include "path/encode.glsl"
+
+/// Adds to what the pixel sees of unlit surfaces; after the last sample its share of the `sum`, which stays right where post
+/// passes change the picture.
+vec3 unlitShare(uint at, vec3 radiance, vec3 sum) {
+    if (params.sample_index > 0u) radiance += unlit[at];
+    if (params.last != 0u) radiance = mix(radiance / max(sum, vec3(1e-30)), vec3(0), lessThanEqual(sum, vec3(0)));
+    unlit[at] = radiance;
+    return radiance;
+}
 
 void main() {
     const uint i = GLOBAL_INDEX;
@@ -32,5 +43,7 @@ void main() {
     vec4 sum = vec4(finite ? radiance : vec3(0), (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
-    if (params.last != 0u) encoded[at] = encode(sum.rgb, params.scale, params.curve);
+    vec3 shown = vec3(0);
+    if (has_unlit) shown = unlitShare(at, finite && (node.flags & NODE_UNLIT) != 0u ? radiance : vec3(0), sum.rgb);
+    if (params.encodes != 0u) encoded[at] = encode(sum.rgb, shown, params.scale, params.share, params.curve);
 }

@@ -1,10 +1,12 @@
-// The two branches of a surface: what it reflects and what it lets through. Include after frame.glsl.
+// The two branches of a surface: what it reflects and what it lets through. Include after frame.glsl and the buffer split_sum.
 #ifndef PEELRAY_BRANCHES_GLSL
 #define PEELRAY_BRANCHES_GLSL
 
 #include "common/material.h"
 #include "path/frame.h"
+#include "path/interface.glsl"
 #include "path/path_params.h"
+#include "path/split_sum.glsl"
 
 struct Branch {
     vec3 weight;      ///< 0: none
@@ -16,6 +18,8 @@ struct Branch {
 const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0);
 
 // Defined by the shader that includes this.
+/// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
+bool samplesMicrofacets();
 /// The half vector of a reflection.
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
@@ -30,41 +34,39 @@ vec3 scatterSurface(Surface s, vec3 incoming, RayState state, out Branch reflect
     if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
     const vec3 view = -incoming;
     const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-    const bool transmits = m.transmission > 0.0 && m.metallic < 1.0;
-    // Volumes are left where the ray meets their back; opaque and thin surfaces are the same from both sides.
-    const bool leaving = transmits && !thin && !s.front;
-    const float eta = thin || !transmits ? m.ior : (leaving ? 1.0 / m.ior : m.ior);
+    const bool transparent = transmits(m), leaving = leavesVolume(m, s.front);
+    const float eta = leaving ? 1.0 / m.ior : m.ior;
     const float alpha = m.roughness * m.roughness;
     const vec3 h = microfacet(s, view, alpha, state.seed);
     const float cosine = clamp(dot(view, h), 0.0, 1.0);
-    float dielectric = fresnelDielectric(cosine, eta);
-    if (transmits && thin) dielectric = 2.0 * dielectric / (1.0 + dielectric);  // both faces of the wall
-    const vec3 metal = fresnelSchlick(s.base_color, cosine);
-    const vec3 fresnel = mix(vec3(dielectric), metal, m.metallic);
+    const vec3 dielectric = wallReflectance(m, cosine, leaving);
     const bool mirror = m.roughness < MIRROR_ROUGHNESS;
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = mirror ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
 
     vec3 reflected = reflect(incoming, h);
-    vec3 weight = fresnel;
-    if (frame[0].spp > 1u && !mirror)
+    vec3 weight = mix(dielectric, fresnelSchlick(s.base_color, 1.0, cosine), m.metallic);
+    if (samplesMicrofacets() && !mirror) {
         weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
-    else if (!mirror && !transmits)
-        weight = environmentBrdf(mix(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), s.base_color, m.metallic), m.roughness, cosine);
+    } else if (!mirror) {
+        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+        const vec4 means = splitSum(m.roughness, cosine);
+        weight = transparent ? weight * means.x : mix(dielectricAlbedo(m, means), metalAlbedo(s.base_color, means), m.metallic);
+    }
     reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0);
     decide(reflection, state.weight, EFFECT_REFLECTION);
 
     vec3 radiance = m.emissive;
-    const float part = transmits ? 1.0 : tracedPart(m);
+    const float part = transparent ? 1.0 : tracedPart(m);
     if (part < 1.0) {  // the untraced part of a wide lobe, at once
         radiance += reflection.weight * (1.0 - part) * environmentRadiance(reflection.direction, m.roughness);
         reflection.weight *= part;
         reflection.traced = reflection.traced && part > 0.0;
     }
-    reflection.blur = frame[0].spp > 1u ? 0.0 : m.roughness;
+    reflection.blur = samplesMicrofacets() ? 0.0 : m.roughness;
 
-    if (transmits) {
+    if (transparent) {
         vec3 direction;
         bool passes = true;
         if (thin)

@@ -153,4 +153,17 @@ Ray leavingRay(Surface s, vec3 start, vec3 direction, float reach) {
     return Ray(start + s.geometric * (slope >= 0.0 ? lift : -lift), first, direction, reach);
 }
 
+/// A ray from the smooth surface that the normals describe to a light that this surface faces. The triangle may turn away from the
+/// light all the same: then the ray starts on the viewer's side, as always, and passes the triangle's plane farther on.
+Ray shadowRay(Surface s, vec3 direction, float reach) {
+    if (dot(direction, s.geometric) >= 0.0) return leavingRay(s, s.shadow_start, direction, reach);
+    return Ray(s.shadow_start + s.geometric * (s.error + s.offset), 0.0, direction, reach);
+}
+
+/// What that ray cannot hit: the surface where it starts, `from`, except where it passes its plane. There a triangle that is not
+/// part of a bulge blocks the light from behind it.
+SurfaceId shadowSkip(Surface s, vec3 direction, SurfaceId from) {
+    return dot(direction, s.geometric) >= 0.0 ? from : SurfaceId(from.instance, NO_TRIANGLE);
+}
+
 #endif

@@ -1,9 +1,11 @@
-// Light on a surface: lamps, sun and diffuse sky. Include after frame.glsl and the buffer of lights.
+// Light on a surface: lamps, sun and diffuse sky. Include after frame.glsl and the buffers of lights and split_sum.
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
 #include "common/material.h"
 #include "path/frame.h"
+#include "path/interface.glsl"
+#include "path/split_sum.glsl"
 
 /// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
 vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
@@ -31,33 +33,33 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
     if (n_l <= 0.0) return vec3(0);
     const vec3 h = normalize(view + to_light);
     const float n_v = max(GRAZING_COSINE, dot(s.normal, view)), n_h = clamp(dot(s.normal, h), 0.0, 1.0), v_h = clamp(dot(view, h), 0.0, 1.0);
-    const vec3 f0 = mix(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), s.base_color, m.metallic);
-    const vec3 fresnel = fresnelSchlick(f0, v_h);
-    vec3 result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - fresnel) * s.base_color / PI;
+    const vec3 dielectric = dielectricReflectance(m, v_h, leavesVolume(m, s.front));
+    vec3 result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - largest(dielectric)) * s.base_color / PI;
     if (m.roughness >= MIRROR_ROUGHNESS) {
         const float alpha = m.roughness * m.roughness;
+        const vec3 fresnel = mix(dielectric, fresnelSchlick(s.base_color, 1.0, v_h), m.metallic);
         result += fresnel * ggxDistribution(n_h, alpha) * ggxMasking(n_v, alpha) * ggxMasking(n_l, alpha) / (4.0 * n_v * n_l);
     }
     return result * n_l;
 }
 
-/// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light.
+/// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light. The
+/// shading normal alone says whether the surface faces the light: the triangle's would cut it off in facets.
 vec3 lampLight(uint index, Surface s, GpuMaterial m, vec3 view, out vec3 direction) {
     float distance;
     const vec3 light = lightAt(lights[index], s.position, direction, distance);
-    if (dot(s.geometric, direction) <= 0.0 || light == vec3(0)) return vec3(0);
-    return light * reflectance(s, m, view, direction);
+    return light == vec3(0) ? light : light * reflectance(s, m, view, direction);
 }
 
 /// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it.
 vec3 skyLight(Surface s, GpuMaterial m, vec3 view) {
-    vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
+    const vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
     if (diffuse == vec3(0)) return vec3(0);
     // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
-    diffuse *= 1.0 - (m.roughness < MIRROR_ROUGHNESS ? vec3(fresnelDielectric(cosine, m.ior))
-                                                     : environmentBrdf(vec3(pow((m.ior - 1.0) / (m.ior + 1.0), 2.0)), m.roughness, cosine));
-    return diffuse * environmentIrradiance(s.normal);
+    const vec3 mirrored = m.roughness < MIRROR_ROUGHNESS ? dielectricReflectance(m, cosine, leavesVolume(m, s.front))
+                                                         : dielectricAlbedo(m, splitSum(m.roughness, cosine));
+    return diffuse * (1.0 - largest(mirrored)) * environmentIrradiance(s.normal);
 }
 
 #endif

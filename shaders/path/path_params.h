@@ -26,7 +26,8 @@ struct PathNode {
     uint flags;        ///< NODE_*, and how many entries are its own
 };
 SHARED_SIZE(PathNode, 20);
-#define NODE_LIGHTS 0x3fffffffu
+#define NODE_LIGHTS 0x1fffffffu
+#define NODE_UNLIT 0x20000000u     // its radiance is a colour that a display is to show as it is
 #define NODE_SURFACE 0x40000000u   // not the sky
 #define NODE_BRANCHES 0x80000000u  // it has children
 
@@ -79,18 +80,21 @@ struct AccumulateParams {
     uint light_capacity;  ///< room in the queue of shadow rays
     uint first_row;       ///< of the band, a multiple of 8
     uint sample_index;
-    uint last;    ///< 1: the last sample, the picture is encoded
-    float scale;  ///< exposure / samples
-    uint curve;   ///< 0 none, 1 ACES, 2 neutral
+    uint last;     ///< 1: the last sample
+    uint encodes;  ///< 1: after it the picture is encoded
+    float scale;   ///< exposure / samples
+    float share;   ///< 1 / samples
+    uint curve;    ///< 0 none, 1 ACES, 2 neutral
 };
-SHARED_SIZE(AccumulateParams, 32);
+SHARED_SIZE(AccumulateParams, 40);
 
 struct EncodeParams {
     uint pixels;
     float scale;  ///< exposure / samples
+    float share;  ///< 1 / samples
     uint curve;   ///< 0 none, 1 ACES, 2 neutral
 };
-SHARED_SIZE(EncodeParams, 12);
+SHARED_SIZE(EncodeParams, 16);
 
 /// Parameters of the ray_setup passes: the box of the scene.
 struct RaySetupParams {

@@ -29,6 +29,7 @@ BUFFER(writeonly, 23, SurfaceId, shadow_skip)
 BUFFER(writeonly, 24, vec3, shadow_light)
 BUFFER(readonly, 25, uvec2, visibility)
 BUFFER(readonly, 26, GpuDraw, draws)
+BUFFER(readonly, 27, vec4, split_sum)
 #include "path/frame.glsl"
 #include "path/branches.glsl"
 #include "path/lighting.glsl"
@@ -42,9 +43,11 @@ shared uint group_counts[4];  // of the workgroup: reflection, refraction, shado
 shared uint group_first;
 shared uint group_first_light;
 
+bool samplesMicrofacets() { return frame[0].spp > 1u; }
+
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
-    if (frame[0].spp <= 1u || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
+    if (!samplesMicrofacets() || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
     vec3 t, b;
     tangents(s.normal, t, b);
     const vec3 local = vec3(dot(view, t), dot(view, b), max(GRAZING_COSINE, dot(view, s.normal)));
@@ -74,7 +77,7 @@ void emitRay(uint index, Branch branch, Surface s, SurfaceId from, vec3 path_wei
 
 /// A ray to light `index`.
 Ray lampRay(uint index, Surface s, vec3 direction) {
-    Ray ray = leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
+    Ray ray = shadowRay(s, direction, uintBitsToFloat(0x7f800000u));
     if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
     return ray;
 }
@@ -123,7 +126,7 @@ void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, Surf
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
             const vec3 light = lampLight(k, s, m, view, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), from, light * share);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), shadowSkip(s, direction, from), light * share);
         }
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     const vec3 sky = skyLight(s, m, view);
@@ -194,7 +197,9 @@ void shadeHit(Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
     if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, 0.0);
     uint sky_rays = 0u;
-    if ((materials[c.surface.material].flags & MATERIAL_UNLIT) == 0u)
+    if ((materials[c.surface.material].flags & MATERIAL_UNLIT) != 0u)
+        c.node.flags |= NODE_UNLIT;
+    else
         c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);

@@ -21,9 +21,10 @@ float fresnelDielectric(float cosine, float eta) {
     return 0.5 * (parallel * parallel + perpendicular * perpendicular);
 }
 
-vec3 fresnelSchlick(vec3 f0, float cosine) {
+/// From `f0` at normal incidence to `f90` at grazing angles.
+vec3 fresnelSchlick(vec3 f0, float f90, float cosine) {
     const float m = clamp(1.0 - cosine, 0.0, 1.0), m2 = m * m;
-    return f0 + (1.0 - f0) * (m2 * m2 * m);
+    return f0 + (f90 - f0) * (m2 * m2 * m);
 }
 
 /// The refracted direction of `incoming` (towards the surface); false: total internal reflection.
@@ -48,14 +49,6 @@ vec3 visibleNormal(vec3 normal, vec3 geometric, vec3 to_viewer) {
 vec3 aboveSurface(vec3 direction, vec3 geometric) {
     const float height = dot(direction, geometric);
     return height >= LEAST_COSINE ? direction : normalize(direction + geometric * (LEAST_COSINE - height));
-}
-
-/// Split-sum factors of a GGX surface under white light: colour = f0 * x + y (Karis: Physically Based Shading on Mobile, 2014).
-vec3 environmentBrdf(vec3 f0, float roughness, float cosine) {
-    const vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    const float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
-    const vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
-    return clamp(f0 * ab.x + ab.y, vec3(0), vec3(1));  // the fit is 4 % too bright at grazing angles
 }
 
 float ggxDistribution(float n_h, float alpha) {

@@ -19,6 +19,8 @@ BUFFER(readonly, SHADOW_FIRST_BINDING + 3, uint, queue)
 PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any);
 
 #ifdef SHADOW_THROUGH_GLASS
+#include "path/interface.glsl"
+
 /// Barycentric weights of a hit.
 vec2 shadowWeights(PeelrayRay ray, PeelrayHit hit);
 
@@ -32,8 +34,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
         const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-        float reflected = fresnelDielectric(clamp(-dot(ray.direction, s.normal), 0.0, 1.0), thin || s.front ? m.ior : 1.0 / m.ior);
-        if (thin) reflected = 2.0 * reflected / (1.0 + reflected);  // both faces of the wall
+        const vec3 reflected = wallReflectance(m, clamp(-dot(ray.direction, s.normal), 0.0, 1.0), leavesVolume(m, s.front));
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));

@@ -20,9 +20,9 @@ using nlohmann::json;
 
 constexpr std::array supported_extensions = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_transmission",
-     "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume", "KHR_node_visibility",
-     "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
+     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
+     "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume",
+     "KHR_node_visibility", "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
 
 enum class Kind {
     flag,
@@ -175,6 +175,8 @@ Members material_members() {
         object("extensions",
                {object("KHR_materials_emissive_strength", {number("emissiveStrength")}),
                 object("KHR_materials_ior", {number("ior")}),
+                object("KHR_materials_specular", {number("specularFactor"), texture("specularTexture"),
+                                                  numbers("specularColorFactor", 3), texture("specularColorTexture")}),
                 object("KHR_materials_transmission", {number("transmissionFactor"), texture("transmissionTexture")}),
                 object("KHR_materials_unlit", {}),
                 object("KHR_materials_volume", {number("thicknessFactor"), texture("thicknessTexture"),

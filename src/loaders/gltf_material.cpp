@@ -64,6 +64,7 @@ class MaterialReader {
         read_metallic_roughness();
         read_emission();
         read_transmission();
+        read_reflectance();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
         ignore(from_.normalTexture.index, "{} normal maps ignored");
         ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
@@ -117,10 +118,6 @@ class MaterialReader {
             material_.transmission *= mean->x;
             ++loader_.ignored["{} transmission textures replaced by their mean"];
         }
-        // The extension allows 0 for "reflects everything", which no ray can be bent by; below 1 there is no such
-        // medium.
-        const tinygltf::Value& ior = extension(from_.extensions, "KHR_materials_ior");
-        material_.ior = std::max(1.f, static_cast<float>(number(ior, "ior", 1.5)));
         material_.thickness = std::max(0.f, static_cast<float>(number(volume, "thicknessFactor", 0)));
         ignore(texture_index(volume, "thicknessTexture"), "{} thickness textures ignored");
         material_.attenuation_color = glm::clamp(vector(volume, "attenuationColor", glm::vec3(1)), 0.f, 1.f);
@@ -129,6 +126,25 @@ class MaterialReader {
             if (distance <= 0)
                 fail("{}: attenuationDistance {} must be above 0", loader_.file.where("materials", index_), distance);
             material_.attenuation_distance = static_cast<float>(distance);
+        }
+    }
+
+    void read_reflectance() {
+        const double ior = number(extension(from_.extensions, "KHR_materials_ior"), "ior", 1.5);
+        // 0 stands for an infinite index; what comes near to that is the same.
+        material_.ior = ior == 0 || ior > 1e6 ? 0.f : static_cast<float>(std::max(1.0, ior));
+        if (ior < 1 && ior != 0)
+            ++loader_.ignored["{} materials with an index of refraction below 1, other than 0, drawn with 1"];
+        const tinygltf::Value& specular = extension(from_.extensions, "KHR_materials_specular");
+        material_.specular = unit(number(specular, "specularFactor", 1));
+        material_.specular_color = glm::max(vector(specular, "specularColorFactor", glm::vec3(1)), glm::vec3(0));
+        if (const auto mean = mean_of(texture_index(specular, "specularTexture"), false)) {
+            material_.specular *= mean->w;
+            ++loader_.ignored["{} specular textures replaced by their mean"];
+        }
+        if (const auto mean = mean_of(texture_index(specular, "specularColorTexture"), true)) {
+            material_.specular_color *= glm::vec3(*mean);
+            ++loader_.ignored["{} specular colour textures replaced by their mean"];
         }
     }
 

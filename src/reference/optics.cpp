@@ -14,8 +14,8 @@ double fresnel_dielectric(double cosine, double eta) {
     return (s * s + p * p) / 2;
 }
 
-glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double cosine) {
-    return f0 + (1.0 - f0) * std::pow(std::clamp(1 - cosine, 0.0, 1.0), 5);
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine) {
+    return f0 + (f90 - f0) * std::pow(std::clamp(1 - cosine, 0.0, 1.0), 5);
 }
 
 std::optional<glm::dvec3> refract_ray(const glm::dvec3& incoming, const glm::dvec3& normal, double eta) {
@@ -36,13 +36,6 @@ glm::dvec3 visible_normal(const glm::dvec3& normal, const glm::dvec3& geometric,
 glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometric) {
     const double height = glm::dot(direction, geometric);
     return height >= LEAST_COSINE ? direction : glm::normalize(direction + geometric * (LEAST_COSINE - height));
-}
-
-glm::dvec3 environment_brdf(const glm::dvec3& f0, double roughness, double cosine) {
-    const double x = 1 - roughness, y = 0.0425 - 0.0275 * roughness;
-    const double z = 1.04 - 0.572 * roughness, w = -0.04 + 0.022 * roughness;
-    const double a = std::min(x * x, std::exp2(-9.28 * cosine)) * x + y;
-    return glm::clamp(f0 * (z - 1.04 * a) + (w + 1.04 * a), 0.0, 1.0);
 }
 
 double ggx_distribution(double n_h, double alpha) {

@@ -16,15 +16,11 @@ inline constexpr double pi = 3.14159265358979323846;
 inline double largest(const glm::dvec3& c) {
     return std::max(c.x, std::max(c.y, c.z));
 }
-/// Normal-incidence reflectance of a dielectric with this index of refraction in air.
-inline double normal_reflectance(double ior) {
-    return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
-}
-
 /// Unpolarised reflectance of a dielectric interface; `cosine` ≥ 0 to the normal on the incoming side, `eta`: index
 /// behind it over index before it. 1 at total internal reflection.
 double fresnel_dielectric(double cosine, double eta);
-glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double cosine);
+/// From `f0` at normal incidence to `f90` at grazing angles.
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine);
 /// Snell's law; nothing at total internal reflection. All unit; `incoming` goes towards the surface, against `normal`.
 std::optional<glm::dvec3> refract_ray(const glm::dvec3& incoming, const glm::dvec3& normal, double eta);
 
@@ -33,8 +29,6 @@ glm::dvec3 visible_normal(const glm::dvec3& normal, const glm::dvec3& geometric,
 /// A direction that would enter the surface is lifted to just above it.
 glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometric);
 
-/// Split-sum reflectance of GGX under white light (Karis, "Physically Based Shading on Mobile", 2014), at most 1.
-glm::dvec3 environment_brdf(const glm::dvec3& f0, double roughness, double cosine);
 double ggx_distribution(double n_h, double alpha);
 /// Smith's masking of one direction.
 double ggx_masking(double cosine, double alpha);

@@ -70,6 +70,7 @@ struct PathTracer::Impl {
     const Geometry& geometry;
     Bvh bvh;
     Surfaces surfaces;
+    Albedos albedos;
     Surroundings surroundings;
     std::vector<Light> lights;
 
@@ -77,6 +78,7 @@ struct PathTracer::Impl {
         : geometry(geometry),
           bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)),
           surfaces(scene, geometry),
+          albedos(scene.materials.size(), surfaces),
           surroundings(environment),
           lights(moment.lights) {
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
@@ -113,6 +115,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     const PictureSettings& s = context.settings;
     const size_t at = size_t(y) * s.width + x;
     glm::dvec4 sum(0);
+    glm::dvec3 unlit(0);  // of it, what a display shows as it is
     for (uint32_t sample = 0; sample < s.spp; sample++) {
         const Shader::Path path = camera_path(view, s, x, y, sample_position(sample));
         Shader shader(context, sample);
@@ -122,6 +125,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
+        if (usable && hit.hit() && surfaces.optics_of_triangle(hit.triangle).unlit) unlit += radiance;
         if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit, context.box);
         rays.reflection += shader.rays().reflection;
         rays.refraction += shader.rays().refraction;
@@ -130,7 +134,8 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     }
     sum /= double(s.spp);
     picture.radiance[at] = glm::vec4(sum);
-    picture.encoded[at] = encode(glm::dvec3(sum), s.exposure, s.tonemap);
+    unlit /= double(s.spp);
+    picture.encoded[at] = encode(glm::dvec3(sum) - unlit, s.exposure, s.tonemap, unlit);
 }
 
 /// One thread's share: tiles until there are none left.
@@ -165,7 +170,8 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     const float aspect = float(settings.width) / float(settings.height);
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
     const View view = make_view(settings.camera, aspect, box.lower, box.upper);
-    const RenderContext context{impl_->bvh, impl_->surfaces, impl_->surroundings, impl_->lights, settings, box};
+    const RenderContext context{
+        impl_->bvh, impl_->surfaces, impl_->albedos, impl_->surroundings, impl_->lights, settings, box};
     Picture picture;
     prepare(picture, settings);
     Tiles tiles(settings);

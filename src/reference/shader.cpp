@@ -43,10 +43,6 @@ Incidence incidence(const Light& light, const glm::dvec3& position) {
     return {glm::dvec3(light.color) * strength, direction};
 }
 
-glm::dvec3 normal_incidence(const Surface& s, const Optics& m) {
-    return glm::mix(glm::dvec3(normal_reflectance(m.ior)), s.base_color, m.metallic);
-}
-
 /// Reflected share of light from `to_light`, times the cosine: Lambert below GGX.
 glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view, const glm::dvec3& to_light) {
     const double n_l = glm::dot(s.normal, to_light);
@@ -54,10 +50,12 @@ glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view
     const glm::dvec3 h = glm::normalize(view + to_light);
     const double n_v = std::max(GRAZING_COSINE, glm::dot(s.normal, view)),
                  n_h = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
-    const glm::dvec3 fresnel = fresnel_schlick(normal_incidence(s, m), std::clamp(glm::dot(view, h), 0.0, 1.0));
-    glm::dvec3 share = (1 - m.metallic) * (1 - m.transmission) * (1.0 - fresnel) * s.base_color / pi;
+    const double v_h = std::clamp(glm::dot(view, h), 0.0, 1.0);
+    const glm::dvec3 dielectric = m.face_reflectance(v_h, m.leaves(s.front));
+    glm::dvec3 share = (1 - m.metallic) * (1 - m.transmission) * (1 - largest(dielectric)) * s.base_color / pi;
     if (m.roughness >= MIRROR_ROUGHNESS) {
         const double alpha = m.roughness * m.roughness;
+        const glm::dvec3 fresnel = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, v_h), m.metallic);
         share += fresnel *
                  (ggx_distribution(n_h, alpha) * ggx_masking(n_v, alpha) * ggx_masking(n_l, alpha) / (4 * n_v * n_l));
     }
@@ -130,22 +128,22 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
         return out;
     }
     const glm::dvec3 view = -path.direction;
-    const bool transmits = m.transmits(), leaving = transmits && !m.thin && !s.front,
-               mirror = m.roughness < MIRROR_ROUGHNESS;
+    const bool transmits = m.transmits(), leaving = m.leaves(s.front), mirror = m.roughness < MIRROR_ROUGHNESS;
     const double eta = leaving ? 1 / m.ior : m.ior, alpha = m.roughness * m.roughness;
     const glm::dvec3 h = half_vector(s, view, alpha, path.seed);
     const double cosine = std::clamp(glm::dot(view, h), 0.0, 1.0);
-    double dielectric = fresnel_dielectric(cosine, eta);
-    if (transmits && m.thin) dielectric = 2 * dielectric / (1 + dielectric);  // both faces of the wall
+    const glm::dvec3 dielectric = m.wall_reflectance(cosine, leaving);
 
     Branch& reflection = out.reflection;
     const glm::dvec3 reflected = path.direction - 2 * glm::dot(path.direction, h) * h;
-    reflection.weight = glm::mix(glm::dvec3(dielectric), fresnel_schlick(s.base_color, cosine), m.metallic);
+    reflection.weight = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, cosine), m.metallic);
     if (!mirror && settings.spp > 1) {
         const double above = glm::dot(reflected, s.normal);
         reflection.weight *= above > 0 ? ggx_masking(above, alpha) : 0;
-    } else if (!mirror && !transmits) {
-        reflection.weight = environment_brdf(normal_incidence(s, m), m.roughness, cosine);
+    } else if (!mirror) {
+        const Albedos::Means means = context_.albedos.at(s.material, cosine);
+        reflection.weight = transmits ? reflection.weight * (means.normal + means.grazing)
+                                      : glm::mix(means.dielectric, means.metal(s.base_color), m.metallic);
     }
     reflection.direction = above_surface(reflected, s.geometric);
     reflection.medium = path.medium;
@@ -166,7 +164,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
     const auto direction = m.thin ? std::optional(path.direction) : refract_ray(path.direction, h, eta);
     if (direction) {
         Branch& refraction = out.refraction;
-        refraction.weight = (1 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
+        refraction.weight = (1.0 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
         refraction.direction = *direction;
         refraction.medium = m.thin ? path.medium : leaving ? none : s.material;
         refraction.sees_sun = mirror && path.sees_sun;
@@ -183,7 +181,7 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
     glm::dvec3 sum(0);
     for (const Light& light : context_.lights) {
         const auto [irradiance, direction] = incidence(light, s.position);
-        if (irradiance == glm::dvec3(0) || glm::dot(s.geometric, direction) <= 0) continue;
+        if (irradiance == glm::dvec3(0)) continue;
         const glm::dvec3 reflected = irradiance * reflectance(s, m, view, direction);
         if (reflected == glm::dvec3(0)) continue;
         if (!context_.settings.shadow) {
@@ -191,10 +189,12 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
             continue;
         }
         rays_.shadow++;
-        const glm::dvec3 start = s.start(s.shadow_start, direction);
+        const glm::dvec3 start = s.lit_start();
         const bool far = light.kind == Light::Kind::directional;
         const double reach = far ? infinity : glm::dot(glm::dvec3(light.position) - start, direction);
-        sum += reflected * visibility(start, direction, reach, triangle);
+        // A triangle that turns away from the light may itself be in the way: where it is no part of a bulge.
+        const bool faces = glm::dot(s.geometric, direction) >= 0;
+        sum += reflected * visibility(start, direction, reach, faces ? triangle : none);
     }
     return sum + sky_light(s, triangle, path);
 }
@@ -205,10 +205,8 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     if (diffuse == glm::dvec3(0)) return diffuse;
     // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
-    if (m.roughness < MIRROR_ROUGHNESS)
-        diffuse *= 1 - fresnel_dielectric(cosine, m.ior);
-    else
-        diffuse *= 1.0 - environment_brdf(glm::dvec3(normal_reflectance(m.ior)), m.roughness, cosine);
+    diffuse *= 1 - largest(m.roughness < MIRROR_ROUGHNESS ? m.face_reflectance(cosine, m.leaves(s.front))
+                                                          : context_.albedos.at(s.material, cosine).dielectric);
     const glm::dvec3 light = diffuse * context_.surroundings.irradiance(s.normal);
     if (!context_.settings.ambient) return light;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
@@ -234,9 +232,8 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
         if (!m.transmits()) return glm::dvec3(0);
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
         const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        double reflected = fresnel_dielectric(cosine, m.thin || s.front ? m.ior : 1 / m.ior);
-        if (m.thin) reflected = 2 * reflected / (1 + reflected);  // both faces of the wall
-        share *= (1 - reflected) * (1 - m.metallic) * m.transmission * s.base_color;
+        share *=
+            (1.0 - m.wall_reflectance(cosine, m.leaves(s.front))) * (1 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!m.thin && !s.front) share *= glm::exp(-m.absorption * (hit.t - from));
         if (largest(share) < LEAST_WEIGHT) return glm::dvec3(0);

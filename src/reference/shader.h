@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "reference/albedos.h"
 #include "reference/bvh.h"
 #include "reference/surface.h"
 #include "scene/picture.h"
@@ -13,6 +14,7 @@ namespace peelray {
 struct RenderContext {
     const Bvh& bvh;
     const Surfaces& surfaces;
+    const Albedos& albedos;
     const Surroundings& surroundings;
     const std::vector<Light>& lights;
     const PictureSettings& settings;

@@ -15,13 +15,31 @@ Optics::Optics(const Material& m)
       metallic(m.metallic),
       roughness(m.roughness),
       transmission(m.transmission),
-      ior(std::max(m.ior, 1.0f)),
+      ior(m.ior == 0 ? 1 : std::max(m.ior, 1.0f)),
+      specified(m.ior == 0 || m.specular != 1 || m.specular_color != glm::vec3(1)),
+      f90(m.specular),
       thin(m.thickness <= 0),
       unlit(m.unlit) {
+    // KHR_materials_ior: an index of 0 stands for an infinite one, which reflects all. KHR_materials_specular.
+    const double normal = m.ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2);
+    f0 = glm::min(normal * glm::dvec3(m.specular_color), 1.0) * double(m.specular);
     // KHR_materials_volume: white becomes attenuation_color after attenuation_distance.
     if (std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
         absorption =
             -glm::log(glm::max(glm::dvec3(m.attenuation_color), glm::dvec3(1e-6))) / double(m.attenuation_distance);
+}
+
+glm::dvec3 Optics::face_reflectance(double cosine, bool leaving) const {
+    if (!specified) return glm::dvec3(optics::fresnel_dielectric(cosine, leaving ? 1 / ior : ior));
+    if (!leaving) return optics::fresnel_schlick(f0, f90, cosine);
+    // The formula's angle is the one outside, where there is one.
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * ior;
+    return sine >= 1 ? glm::dvec3(1) : optics::fresnel_schlick(f0, f90, std::sqrt(1 - sine * sine));
+}
+
+glm::dvec3 Optics::wall_reflectance(double cosine, bool leaving) const {
+    const glm::dvec3 face = face_reflectance(cosine, leaving);
+    return transmits() && thin ? 2.0 * face / (1.0 + face) : face;
 }
 
 glm::dvec3 Surface::start(const glm::dvec3& point, const glm::dvec3& direction) const {

@@ -13,11 +13,22 @@ namespace peelray {
 /// A material's constants.
 struct Optics {
     glm::dvec3 base_color, emissive, absorption;  ///< absorption: per world unit inside the volume
-    double metallic, roughness, transmission, ior;
+    double metallic, roughness, transmission;
+    double ior;      ///< ≥ 1
+    bool specified;  ///< the dielectric part's reflectance is stated: Schlick's, from f0 to f90; else it follows from
+                     ///< ior
+    glm::dvec3 f0;
+    double f90;
     bool thin, unlit;
 
     explicit Optics(const Material& material);
     bool transmits() const { return transmission > 0 && metallic < 1; }
+    /// Is a ray that meets the surface from its `front` or back inside of the volume?
+    bool leaves(bool front) const { return transmits() && !thin && !front; }
+    /// Of one face of the dielectric part; `cosine` ≥ 0 on the incoming side, `leaving`: from inside.
+    glm::dvec3 face_reflectance(double cosine, bool leaving) const;
+    /// Of what a ray meets: a thin wall has two faces.
+    glm::dvec3 wall_reflectance(double cosine, bool leaving) const;
 };
 
 /// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
@@ -34,6 +45,9 @@ struct Surface {
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
     /// a triangle that coincides with the surface's own is not hit either.
     glm::dvec3 start(const glm::dvec3& point, const glm::dvec3& direction) const;
+    /// Where a ray to a light starts: on the viewer's side of the smooth surface, even if the triangle turns away from
+    /// the light.
+    glm::dvec3 lit_start() const { return shadow_start + geometric * error; }
 };
 
 /// Attributes and materials of a scene, which must outlive it.

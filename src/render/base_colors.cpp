@@ -4,10 +4,24 @@
 #include <cmath>
 
 #include "common/material.h"
+#include "render/fresnel_fit.h"
 #include "scene/sidedness.h"
 
 namespace peelray {
 namespace {
+
+/// What the dielectric part reflects: by its index alone, or as KHR_materials_specular says.
+void set_reflectance(GpuMaterial& m, const Material& material) {
+    const bool infinite = material.ior == 0;
+    m.ior = infinite ? 1 : std::max(material.ior, 1.0f);  // nothing gets into what reflects all
+    const double root = (m.ior - 1.0) / (m.ior + 1.0), f0 = infinite ? 1 : root * root;
+    m.f0 = glm::min(float(f0) * material.specular_color, glm::vec3(1)) * material.specular;
+    m.f90 = material.specular;
+    if (infinite || material.specular != 1 || material.specular_color != glm::vec3(1))
+        m.flags |= MATERIAL_SCHLICK;
+    else
+        m.fresnel_fit = fresnel_fit(m.ior);
+}
 
 GpuMaterial gpu_material(const Material& material, bool colored) {
     GpuMaterial m{};
@@ -16,10 +30,10 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.emissive = material.emissive;
     m.roughness = material.roughness;
     m.transmission = material.transmission;
-    m.ior = std::max(material.ior, 1.0f);
     m.texture = material.base_color_texture;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
               (colored ? MATERIAL_COLORED : 0u) | (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
+    set_reflectance(m, material);
     m.thickness = material.thickness;
     m.alpha = material.alpha;
     m.alpha_cutoff = material.alpha_cutoff;

@@ -200,6 +200,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"nodes", level.nodes},
                                    {"triangle_objects", scene_.triangle_objects},
                                    {"objects", current_ ? with_probes_ : objects_.without_probes()},
+                                   {"split_sum", scene_.split_sum},
                                    Binding::if_used("probes", current_)}),
                  params, groups);
     commands.run(device_.pass("cubemap_shadow"),
@@ -209,7 +210,8 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"nodes", level.nodes},
                                    {"lights", scene_.lights},
                                    {"shadow_maps", shadows_.maps()},
-                                   {"shadow_depths", shadows_.depths()}}),
+                                   {"shadow_depths", shadows_.depths()},
+                                   {"split_sum", scene_.split_sum}}),
                  params, groups);
 }
 

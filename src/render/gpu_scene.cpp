@@ -9,6 +9,7 @@
 #include "scene/alpha_test.h"
 #include "scene/picture.h"
 #include "scene/sidedness.h"
+#include "split_sum_table.h"
 #include "view/view_params.h"
 
 namespace peelray {
@@ -66,9 +67,14 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     triangle_objects = upload(device, commands, "objects of the triangles", assembly.objects);
     std::vector<bool> used(scene.materials.size(), false);
     for (uint32_t material : assembly.materials) used[material] = true;
-    for (size_t i = 0; i < used.size(); i++) has_glass |= used[i] && transmits(scene.materials[i]);
+    for (size_t i = 0; i < used.size(); i++) {
+        has_glass |= used[i] && transmits(scene.materials[i]);
+        has_unlit |= used[i] && scene.materials[i].unlit;
+    }
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
     environment = upload(device, commands, "environment map", env.texels);
+    split_sum = Buffer(device, "split sum", sizeof kSplitSum);
+    commands.upload(split_sum, std::span<const float>(kSplitSum[0], sizeof kSplitSum / sizeof(float)));
     env_size_ = {env.width, env.height};
     env_levels_ = env.levels;
     sun_cosine_ = env.sun_cosine;
@@ -112,7 +118,7 @@ void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) 
 uint64_t GpuScene::bytes() const {
     uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
     for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
-                                 &lights, &environment, &draw_table})
+                                 &lights, &environment, &split_sum, &draw_table})
         sum += buffer->bytes();
     return sum;
 }

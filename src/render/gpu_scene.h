@@ -24,7 +24,9 @@ class GpuScene {
     BaseColorBuffers base_colors;
     Buffer normals, triangle_ids, triangle_objects;
     Buffer lights, environment;
+    Buffer split_sum;                  ///< the table of path/split_sum.h
     bool has_glass = false;            ///< some triangle lets light through
+    bool has_unlit = false;            ///< some triangle is to be shown as it is
     std::vector<GpuLight> light_list;  ///< what `lights` holds
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body

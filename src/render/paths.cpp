@@ -27,7 +27,8 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           {"shadow_skip", queues.lights().skip},
                           {"shadow_light", queues.lights().light},
                           {"visibility", f.view.target.visibility},
-                          {"draws", scene.draw_table}});
+                          {"draws", scene.draw_table},
+                          {"split_sum", scene.split_sum}});
     const Pass& pass = f.device.pass("scatter", {{"camera", camera}, {"by_number", camera && f.view.by_number()}});
     if (camera)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));

@@ -16,16 +16,18 @@ float scale_of(const PictureSettings& settings) {
 
 }  // namespace
 
-void PictureOutput::prepare(const PictureSettings& settings) {
+void PictureOutput::prepare(const PictureSettings& settings, bool unlit) {
     const MemoryPart part(device_, "images");
     ensure_size(device_, picture_, "picture", pixels_of(settings) * 16);
     ensure_size(device_, encoded_, "encoded picture", pixels_of(settings) * 4);
+    has_unlit_ = unlit;
+    if (unlit) ensure_size(device_, unlit_, "unlit colours", pixels_of(settings) * sizeof(glm::vec3));
 }
 
 void PictureOutput::record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame,
                                         const LevelParams& p, const PictureSettings& settings) {
-    const bool encodes = p.sample_index + 1 == settings.spp && post_passes_.empty();
-    commands.run(device_.pass("accumulate"),
+    const bool last = p.sample_index + 1 == settings.spp;
+    commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}}),
                  {{"frame", frame},
                   {"nodes", queues.level(0).nodes},
                   {"branches", queues.level(0).branches},
@@ -33,9 +35,11 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                   {"shadow_light", queues.lights().light},
                   {"queue", queues.counters()},
                   {"picture", picture_},
-                  {"encoded", encoded_}},
-                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, encodes,
-                                  scale_of(settings), uint32_t(settings.tonemap)},
+                  {"encoded", encoded_},
+                  unlit()},
+                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, last,
+                                  last && post_passes_.empty(), scale_of(settings), 1 / float(settings.spp),
+                                  uint32_t(settings.tonemap)},
                  groups_for(p.capacity, 64));
 }
 
@@ -43,9 +47,10 @@ bool PictureOutput::record_post(Commands& commands, const PictureSettings& setti
     if (post_passes_.empty()) return false;
     for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
     const uint64_t pixels = pixels_of(settings);
-    commands.run(device_.pass("encode"), {{"picture", picture_}, {"encoded", encoded_}},
-                 EncodeParams{uint32_t(pixels), scale_of(settings), uint32_t(settings.tonemap)},
-                 groups_for(pixels, 64));
+    commands.run(
+        device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
+        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap)},
+        groups_for(pixels, 64));
     return true;
 }
 

@@ -20,8 +20,8 @@ class PictureOutput {
 
     void add(PostPass pass) { post_passes_.push_back(std::move(pass)); }
 
-    /// Makes room.
-    void prepare(const PictureSettings& settings);
+    /// Makes room; `unlit`: some surfaces are to be shown as they are.
+    void prepare(const PictureSettings& settings, bool unlit);
     /// Records that a band of the camera's level is added to the picture; `frame`: the view's constants. What no post
     /// pass waits for is encoded along with the last sample.
     void record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame, const LevelParams& p,
@@ -31,12 +31,17 @@ class PictureOutput {
     bool record_post(Commands& commands, const PictureSettings& settings);
     void download(Commands& commands, const PictureSettings& settings, Picture& out) const;
 
-    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes(); }
+    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes() + unlit_.bytes(); }
 
   private:
     Device& device_;
     std::vector<PostPass> post_passes_;
+    /// Gives the picture's values to the parts of a display: without what is unlit, nothing of `unlit_` is read.
+    Binding unlit() const { return Binding::if_used("unlit", has_unlit_ ? &unlit_ : nullptr); }
+
     Buffer picture_, encoded_;
+    Buffer unlit_;  ///< vec3 of each pixel: what it sees of unlit surfaces, in the end its share
+    bool has_unlit_ = false;
 };
 
 }  // namespace peelray

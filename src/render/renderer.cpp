@@ -117,7 +117,7 @@ void Renderer::Impl::prepare(const RenderSettings& settings) {
     check_settings(f.device, f.scene, settings);
     f.commands.time_passes(settings.time_passes);
     f.view.prepare(f.scene, settings);
-    output.prepare(settings);
+    output.prepare(settings, f.scene.has_unlit);
     prepare_tracer();
     prepare_view();
     if (f.maps) prepare_maps();

@@ -39,8 +39,8 @@ glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap) {
     return glm::clamp(color, 0.0, 1.0);
 }
 
-uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap) {
-    const glm::dvec3 color = tone_curve(radiance * std::exp2(exposure), tonemap);
+uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap, const glm::dvec3& unlit) {
+    const glm::dvec3 color = glm::clamp(tone_curve(radiance * std::exp2(exposure), tonemap) + unlit, 0.0, 1.0);
     uint32_t encoded = 0xff000000u;
     for (int i = 0; i < 3; i++) encoded |= uint32_t(std::lround(linear_to_srgb(color[i]) * 255)) << (8 * i);
     return encoded;

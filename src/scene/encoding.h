@@ -14,7 +14,7 @@ double linear_to_srgb(double linear);
 glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap);
 
 /// A pixel of the encoded picture: exposed by `exposure` stops, tone-mapped, 8-bit sRGB, red in the lowest byte,
-/// opaque.
-uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap);
+/// opaque. `unlit`: what is added to it as it is, linear (KHR_materials_unlit).
+uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap, const glm::dvec3& unlit = glm::dvec3(0));
 
 }  // namespace peelray

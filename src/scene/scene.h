@@ -29,7 +29,8 @@ struct Texture {
     bool nearest = false;  ///< magnification filter: nearest texel instead of bilinear
 };
 
-/// glTF 2.0 metallic-roughness with transmission, ior, volume and emissive_strength; textures modulate factors.
+/// glTF 2.0 metallic-roughness with transmission, ior, specular, volume and emissive_strength; textures modulate
+/// factors.
 struct Material {
     std::string name;
     glm::vec3 base_color{1};         ///< linear, [0, 1]
@@ -40,7 +41,9 @@ struct Material {
     float roughness = 1;             ///< perceptual, [0, 1]; GGX alpha is its square
     glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
     float transmission = 0;          ///< share of the light that is not reflected and passes through, [0, 1]
-    float ior = 1.5f;                ///< index of refraction, ≥ 1
+    float ior = 1.5f;                ///< index of refraction, ≥ 1; 0: infinite, all light is reflected
+    float specular = 1;              ///< share of the reflection of what is no metal, [0, 1] (KHR_materials_specular)
+    glm::vec3 specular_color{1};     ///< its colour at normal incidence, ≥ 0
     float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
     float attenuation_distance = std::numeric_limits<float>::infinity();

@@ -54,56 +54,198 @@ TEST_F(FurnaceTest, ThinGlassBallIsInvisible) {
     ball(thin_glass(), 0.98, 1.001, settings_).expect(0, 4000);
 }
 
-TEST_F(FurnaceTest, RoughMetalIsNeitherBlackNorBright) {
-    for (float roughness : {0.2f, 0.5f, 1.f}) {
-        SCOPED_TRACE(roughness);
-        Material grey = metal("grey", {0.9f, 0.9f, 0.9f});
-        grey.roughness = roughness;
-        ball(grey, 0.4, 1.001, settings_).expect(0, 4000);
-        // A saturated colour: the channels at 0 must not pull the whole pixel down.
-        Material red = metal("red", {1, 0, 0});
-        red.roughness = roughness;
-        Stage stage;
-        stage.add(sphere({0, 0, 0}, 1, 24), red);
-        const RenderResult picture = render(stage, white, settings_);
-        EXPECT_GT(radiance_at(picture, 48, 48).x, 0.4);
-        EXPECT_LT(radiance_at(picture, 48, 48).y, 0.1);
-    }
+double schlick(double f0, double f90, double cosine) {
+    return f0 + (f90 - f0) * std::pow(1 - cosine, 5);
 }
 
-/// Share of white light that a GGX metal of reflectance 1 reflects towards a direction, by quadrature over its
-/// microfacets.
-double ggx_albedo(double cosine, double alpha) {
+/// Share of white light that a GGX surface reflects towards a direction, by quadrature over its microfacets, whose
+/// reflectance is fresnel(cosine).
+template <typename Fresnel>
+double ggx_albedo(double cosine, double roughness, Fresnel fresnel) {
+    const double alpha = roughness * roughness;
     const auto masking = [&](double c) { return 2 * c / (c + std::sqrt(alpha * alpha + (1 - alpha * alpha) * c * c)); };
-    const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const double sine = std::sqrt(1 - cosine * cosine);
     double sum = 0;
-    const int n = 200;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            const double theta = (i + 0.5) / n * kPi / 2, phi = (j + 0.5) / n * 2 * kPi, c = std::cos(theta),
-                         k = c * c * (alpha * alpha - 1) + 1;
-            const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), c);
-            const double v_h = glm::dot(view, h), n_l = 2 * v_h * c - cosine;
+    const int rings = 200, sectors = 60;
+    for (int i = 0; i < rings; i++) {
+        // Rings of the same share of D·cosine: tan² = alpha² u / (1 - u).
+        const double u = (i + 0.5) / rings, c = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u)),
+                     s = std::sqrt(1 - c * c);
+        for (int k = 0; k < sectors; k++) {
+            const double v_h = sine * s * std::cos((k + 0.5) / sectors * kPi) + cosine * c, n_l = 2 * v_h * c - cosine;
             if (v_h <= 0 || n_l <= 0) continue;
-            sum += alpha * alpha / (kPi * k * k) * masking(cosine) * masking(n_l) * v_h / cosine * std::sin(theta);
+            sum += fresnel(std::min(v_h, 1.0)) * masking(cosine) * masking(n_l) * v_h / (cosine * c);
         }
-    return sum * (kPi / 2 / n) * (2 * kPi / n);
+    }
+    return sum / (rings * sectors);
 }
 
-TEST_F(FurnaceTest, SampledRoughMetalKeepsItsLight) {
-    Stage stage;
-    Material m = plane_mirror();
-    m.roughness = 0.7f;
-    stage.add(ground(50), m);
-    for (double cosine : {0.95, 0.6, 0.3}) {
-        const float sine = float(std::sqrt(1 - cosine * cosine));
-        RenderSettings settings = settings_for(orthographic({5 * sine, float(5 * cosine), 0}, {0, 0, 0}, 1), 24);
-        settings.spp = 32;
-        const RenderResult picture = render(stage, white, settings);
-        double mean = 0;
-        for (const glm::vec4& p : picture.radiance) mean += p.x / double(picture.radiance.size());
-        EXPECT_NEAR(mean, ggx_albedo(cosine, 0.49), 0.01) << cosine;
+/// Mean over the pixels that lie wholly on a ball and are not seen too obliquely, and what it should be: the mean of
+/// albedo(cosine).
+template <typename Albedo>
+std::pair<glm::dvec3, glm::dvec3> ball_means(const RenderResult& picture, const glm::dvec3& to_viewer, Albedo albedo) {
+    std::vector<glm::dvec3> steps;
+    for (int i = 1; i <= 100; i++) steps.push_back(albedo(i / 100.0));
+    glm::dvec3 got(0), want(0);
+    double count = 0;
+    for (size_t i = 0; i < picture.radiance.size(); i++) {
+        const double cosine = glm::dot(glm::dvec3(picture.aovs.normal[i]), to_viewer) * 100;
+        if (picture.radiance[i].w < 1 || cosine < 5) continue;
+        const size_t lower = std::min(size_t(cosine), size_t(99));
+        got += glm::dvec3(picture.radiance[i]);
+        want += glm::mix(steps[lower - 1], steps[lower], cosine - double(lower));
+        count++;
     }
+    EXPECT_GT(count, 500);
+    return {got / count, want / count};
+}
+
+TEST_F(FurnaceTest, RoughBallIsAsBrightAtOneSampleAsAtMany) {
+    const Camera camera = orthographic({1, 2, 4}, {0, 0, 0}, 2.2f);
+    const glm::dvec3 to_viewer = glm::normalize(glm::dvec3(1, 2, 4));
+    const auto expect_means = [&](const Material& material, auto albedo, double tolerance) {
+        Stage stage;
+        stage.add(sphere({0, 0, 0}, 1, 24), material);
+        for (uint32_t spp : {1u, 64u}) {
+            RenderSettings settings = settings_for(camera, 40);
+            settings.spp = spp;
+            settings.aovs = true;
+            const auto [got, want] = ball_means(render(stage, white, settings), to_viewer, albedo);
+            EXPECT_TRUE(near(got, want, tolerance)) << spp << " samples: " << text(got) << ", expected " << text(want);
+        }
+    };
+    for (double roughness : {0.06, 0.25, 0.5, 0.75, 1.0}) {
+        SCOPED_TRACE(roughness);
+        Material red = metal("red", {1, 0.2f, 0});
+        red.roughness = float(roughness);
+        expect_means(
+            red,
+            [&](double cosine) {
+                const auto of = [&](double f0) {
+                    return ggx_albedo(cosine, roughness, [&](double c) { return schlick(f0, 1, c); });
+                };
+                return glm::dvec3(of(1), of(0.2), of(0));
+            },
+            0.006);
+        for (double ior : {1.5, 2.4}) {
+            SCOPED_TRACE(ior);
+            Material black_body;
+            black_body.base_color = glm::vec3(0);
+            black_body.roughness = float(roughness);
+            black_body.ior = float(ior);
+            expect_means(
+                black_body,
+                [&](double cosine) {
+                    return glm::dvec3(ggx_albedo(cosine, roughness, [&](double c) { return fresnel(c, 1, ior); }));
+                },
+                0.002);
+        }
+        Material specular;
+        specular.base_color = glm::vec3(0);
+        specular.roughness = float(roughness);
+        specular.specular = 0.5f;
+        specular.specular_color = {4, 1, 0};
+        expect_means(
+            specular,
+            [&](double cosine) {
+                const auto of = [&](double color) {
+                    return ggx_albedo(cosine, roughness, [&](double c) { return schlick(0.02 * color, 0.5, c); });
+                };
+                return glm::dvec3(of(4), of(1), of(0));
+            },
+            0.002);
+    }
+}
+
+TEST_F(FurnaceTest, RoughSurfaceKeepsItsLightAtGrazingAngles) {
+    for (double roughness : {0.3, 0.7, 1.0})
+        for (double cosine : {0.95, 0.6, 0.3, 0.1, 0.04}) {
+            Stage stage;
+            Material m = plane_mirror();
+            m.roughness = float(roughness);
+            stage.add(ground(50), m);
+            const float sine = float(std::sqrt(1 - cosine * cosine));
+            RenderSettings settings = settings_for(orthographic({5 * sine, float(5 * cosine), 0}, {0, 0, 0}, 1), 16);
+            for (uint32_t spp : {1u, 48u}) {
+                settings.spp = spp;
+                const RenderResult picture = render(stage, white, settings);
+                double mean = 0;
+                for (const glm::vec4& p : picture.radiance) mean += p.x / double(picture.radiance.size());
+                EXPECT_NEAR(mean, ggx_albedo(cosine, roughness, [](double) { return 1; }), 0.01)
+                    << "roughness " << roughness << ", cosine " << cosine << ", samples " << spp;
+            }
+        }
+}
+
+TEST_F(FurnaceTest, WhiteDielectricLosesNothing) {
+    // What is not reflected is scattered: with one sample exactly so at every pixel.
+    for (float roughness : {0.f, 0.06f, 0.4f, 0.7f, 1.f})
+        for (float ior : {1.f, 1.5f, 2.4f}) {
+            SCOPED_TRACE(fmt::format("roughness {}, index {}", roughness, ior));
+            Material m;
+            m.roughness = roughness;
+            m.ior = ior;
+            ball(m, 0.999, 1.001, settings_).expect(0, 4000);
+        }
+}
+
+TEST_F(FurnaceTest, InfiniteIndexReflectsAll) {
+    Material m;
+    m.base_color = glm::vec3(0);
+    m.roughness = 0;
+    m.ior = 0;
+    ball(m, 0.999, 1.001, settings_).expect(0, 4000);
+    m.transmission = 1;  // nothing gets in
+    ball(m, 0.999, 1.001, settings_).expect(0, 4000);
+    m.thickness = 1;
+    ball(m, 0.999, 1.001, settings_).expect(0, 4000);
+    m.base_color = glm::vec3(1);
+    ball(m, 0.999, 1.001, settings_).expect(0, 4000);
+    m.transmission = 0;
+    m.roughness = 0.7f;
+    RenderSettings many = settings_;
+    many.spp = 16;
+    for (const RenderSettings& settings : {settings_, many}) ball(m, 0.3, 1.001, settings).expect(0, 4000);
+}
+
+TEST_F(FurnaceTest, SpecularStatesTheReflection) {
+    // KHR_materials_specular: Schlick's from min(((n - 1) / (n + 1))² color, 1) factor to the factor, for each channel.
+    Stage stage;
+    Material m;
+    m.base_color = glm::vec3(0);
+    m.roughness = 0;
+    stage.add(ground(50), m);
+    Material& made = stage.scene.materials[0];
+    for (float ior : {0.f, 1.f, 1.5f, 1000.f})
+        for (float factor : {0.f, 0.25f, 1.f})
+            for (const glm::vec3& color : {glm::vec3(0.04f, 0.5f, 0), glm::vec3(1, 2, 30)})
+                for (double cosine : {1.0, 0.5, 0.1}) {
+                    made.ior = ior;
+                    made.specular = factor;
+                    made.specular_color = color;
+                    const float sine = float(std::sqrt(1 - cosine * cosine));
+                    const RenderSettings settings = settings_for(
+                        orthographic({5 * sine, float(5 * cosine), 0}, {0, 0, 0}, 1, {-cosine, sine, 0}), 4);
+                    const double normal = ior == 0 ? 1 : std::pow((ior - 1.0) / (ior + 1.0), 2);
+                    glm::dvec3 want;
+                    for (int k = 0; k < 3; k++)
+                        want[k] = schlick(std::min(normal * color[k], 1.0) * factor, factor, cosine);
+                    EXPECT_TRUE(near(radiance_at(render(stage, white, settings), 1, 1), want, 1e-4))
+                        << "index " << ior << ", factor " << factor << ", cosine " << cosine << ": " << text(want);
+                }
+}
+
+TEST_F(FurnaceTest, SpecularGlassLosesNothing) {
+    for (float thickness : {0.f, 1.f})
+        for (float factor : {0.f, 0.3f}) {
+            Material m = clear_glass();
+            m.thickness = thickness;
+            m.specular = factor;
+            m.specular_color = {1, 0.5f, 3};
+            RenderSettings settings = settings_;
+            settings.bounces = 12;
+            ball(m, 0.98, 1.001, settings).expect(0, 4000);
+        }
 }
 
 TEST_F(FurnaceTest, EmissionIsShownExactly) {

@@ -173,6 +173,98 @@ TEST_F(ShadowTest, NoAcneOnASphere) {
     }
 }
 
+TEST_F(ShadowTest, TessellatedSphereIsLitAsTheSmoothOneIs) {
+    // Nothing in the way: cosine of the shading normal, up to the line where it turns away. With shadows the same, but
+    // for what the facets cannot tell near that line.
+    const glm::dvec3 travel = glm::normalize(glm::dvec3(-1, -0.4, -0.15));
+    for (uint32_t squares : {3u, 6u, 12u})
+        for (bool shadow : {false, true}) {
+            SCOPED_TRACE(fmt::format("{} squares, {}", squares, shadow ? "shadows" : "no shadows"));
+            Stage stage;
+            stage.add(sphere({0.1f, -0.2f, 0.05f}, 1, squares), lambert({1, 1, 1}));
+            stage.sun(glm::vec3(travel), {3, 3, 3});
+            RenderSettings settings = settings_for(orthographic({-1, 1.5f, 3}, {0, 0, 0}, 2.6f), 128);
+            settings.aovs = true;
+            settings.shadow = shadow;
+            settings.cubes.ldc = 128;
+            const RenderResult picture = render(stage, black, settings);
+            Tally all, bright;
+            for (size_t i = 0; i < picture.radiance.size(); i++) {
+                if (picture.aovs.triangle[i] < 0) continue;
+                const double cosine = -glm::dot(glm::dvec3(picture.aovs.normal[i]), travel),
+                             got = picture.radiance[i].x;
+                const bool right = std::abs(got - std::max(0.0, cosine) * 3 / kPi) < 1e-3;
+                const auto example = [&, i] {
+                    return fmt::format("pixel {},{}: {:.4f}, cosine {:.4f}", i % 128, i / 128, got, cosine);
+                };
+                all.add(right, example);
+                if (cosine > 0.02) bright.add(right, example);
+            }
+            all.expect(shadow ? 0.01 : 0, 5000);
+            bright.expect(shadow ? 1e-3 : 0, 2500);
+        }
+}
+
+TEST_F(ShadowTest, BentNormalsLetNoLightThrough) {
+    // Light from below a sheet, which its normals would see: the sheet itself is in the way. Two large triangles; a
+    // dent and a bulge of sixteen.
+    const glm::dvec3 travel = glm::normalize(glm::dvec3(1, 0.1, 0.2));
+    const auto bent = [](float amount, uint32_t n) {
+        Primitive sheet;
+        for (uint32_t j = 0; j <= n; j++)
+            for (uint32_t i = 0; i <= n; i++) {
+                const glm::vec2 p(2.f * float(i) / float(n) - 1, 1 - 2.f * float(j) / float(n));
+                sheet.positions.push_back({2 * p.x, 0, 2 * p.y});
+                sheet.normals.push_back(glm::normalize(glm::vec3(amount * p.x, 1, amount * p.y)));
+            }
+        for (uint32_t j = 0; j < n; j++)
+            for (uint32_t i = 0; i < n; i++) {
+                const uint32_t a = j * (n + 1) + i;
+                sheet.triangles.push_back({a, a + 1, a + n + 2});
+                sheet.triangles.push_back({a, a + n + 2, a + n + 1});
+            }
+        return sheet;
+    };
+    for (const auto& [amount, squares] : {std::pair{0.5f, 1u}, {-0.5f, 1u}, {0.5f, 4u}, {-0.5f, 4u}}) {
+        Stage stage;
+        stage.add(bent(amount, squares), lambert({1, 1, 1}));
+        stage.sun(glm::vec3(travel), {3, 3, 3});
+        const RenderResult picture = render(stage, black, settings_for(from_above(3.6f)));
+        Tally dark;
+        for (size_t i = 0; i < picture.radiance.size(); i++)
+            dark.add(picture.radiance[i].x == 0,
+                     [&, i] { return fmt::format("pixel {},{}: {:.4f}", i % 64, i / 64, picture.radiance[i].x); });
+        SCOPED_TRACE(fmt::format("bent by {}, {} squares", amount, squares));
+        dark.expect(0, 4096);
+    }
+}
+
+TEST_F(ShadowTest, FlatFacesTurnDarkWithTheirPlanes) {
+    const glm::dvec3 travel = glm::normalize(glm::dvec3(-1, -0.4, -0.15));
+    Stage stage;
+    Primitive ball = sphere({0, 0, 0}, 1, 4), flat;
+    for (const glm::uvec3& t : ball.triangles) {
+        const glm::vec3 a = ball.positions[t.x], b = ball.positions[t.y], c = ball.positions[t.z];
+        const uint32_t first = uint32_t(flat.positions.size());
+        flat.positions.insert(flat.positions.end(), {a, b, c});
+        flat.normals.insert(flat.normals.end(), 3, glm::normalize(glm::cross(b - a, c - a)));
+        flat.triangles.push_back({first, first + 1, first + 2});
+    }
+    stage.add(flat, lambert({1, 1, 1}));
+    stage.sun(glm::vec3(travel), {3, 3, 3});
+    RenderSettings settings = settings_for(orthographic({-1, 1.5f, 3}, {0, 0, 0}, 2.6f), 128);
+    settings.aovs = true;
+    const RenderResult picture = render(stage, black, settings);
+    Tally all;
+    for (size_t i = 0; i < picture.radiance.size(); i++) {
+        if (picture.aovs.triangle[i] < 0) continue;
+        const double cosine = -glm::dot(glm::dvec3(picture.aovs.normal[i]), travel), got = picture.radiance[i].x;
+        all.add(std::abs(got - std::max(0.0, cosine) * 3 / kPi) < 1e-4,
+                [&, i] { return fmt::format("pixel {},{}: {:.4f}, cosine {:.4f}", i % 128, i / 128, got, cosine); });
+    }
+    all.expect(0, 5000);
+}
+
 TEST_F(ShadowTest, SpotConeFadesBetweenItsAngles) {
     Stage stage;
     stage.add(ground(4), lambert({1, 1, 1}));

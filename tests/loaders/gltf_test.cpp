@@ -374,6 +374,34 @@ TEST(Gltf, Materials) {
     EXPECT_TRUE(has_note(scene, "BLEND"));
 }
 
+TEST(Gltf, ReflectanceOfDielectrics) {
+    const TempFolder folder;
+    json gltf = square();
+    primitive(gltf)["material"] = 0;
+    const auto with = [&](const json& extensions) {
+        gltf["materials"] = {{{"extensions", extensions}}};
+        return load(folder, gltf);
+    };
+    const auto ior = [&](double value) { return with({{"KHR_materials_ior", {{"ior", value}}}}); };
+    EXPECT_FLOAT_EQ(with(json::object()).materials[0].ior, 1.5f);
+    EXPECT_EQ(with(json::object()).materials[0].specular, 1);
+    EXPECT_EQ(with(json::object()).materials[0].specular_color, glm::vec3(1));
+    EXPECT_EQ(ior(0).materials[0].ior, 0) << "stands for an infinite one";
+    EXPECT_TRUE(ior(0).notes.empty());
+    EXPECT_EQ(ior(1000).materials[0].ior, 1000);
+    EXPECT_EQ(ior(1e30).materials[0].ior, 0) << "as good as infinite";
+    for (double impossible : {0.5, -2.0}) {
+        EXPECT_EQ(ior(impossible).materials[0].ior, 1);
+        EXPECT_TRUE(has_note(ior(impossible), "index of refraction below 1"));
+    }
+    const Scene scene = with(
+        {{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", json::array({0.25, 2, -1})}}}});
+    EXPECT_EQ(scene.materials[0].specular, 0.5f);
+    EXPECT_EQ(scene.materials[0].specular_color, glm::vec3(0.25f, 2, 0));
+    EXPECT_TRUE(scene.extensions_unsupported.empty());
+    EXPECT_EQ(with({{"KHR_materials_specular", {{"specularFactor", 7}}}}).materials[0].specular, 1);
+}
+
 /// Shares of alpha that are there, at the corners of the square: (0, 0), (1, 0), (1, 1) of its first triangle.
 std::array<bool, 3> corners_present(const Scene& scene) {
     const Geometry geometry = flatten(scene);

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "reference/oracle.h"
+#include "scene/encoding.h"
 
 namespace peelray {
 namespace {
@@ -113,13 +114,41 @@ TEST_F(PathTracerTest, ImpossibleSettingsNameTheOption) {
 
 TEST_F(PathTracerTest, ExposureAndToneCurveApplyToTheEncodedPictureOnly) {
     Stage stage;
-    stage.add(ground(3), unlit({0.25f, 0.25f, 0.25f}));
+    Material light = lambert({0, 0, 0});
+    light.emissive = glm::vec3(0.25f);
+    stage.add(ground(3), light);
     RenderSettings settings = settings_for(from_above(2), 8);
     settings.tonemap = Tonemap::none;
     settings.exposure = 1;
     const Picture picture = render(stage, black, settings);
     EXPECT_EQ(picture.radiance[20], glm::vec4(0.25f, 0.25f, 0.25f, 1));
     EXPECT_EQ(picture.encoded[20], 0xffbcbcbcu);  // sRGB of 0.5 is 188
+}
+
+TEST_F(PathTracerTest, UnlitColoursComeOutAsTheyAre) {
+    Stage stage;
+    stage.add(parallelogram({-4, 0, 4}, {4, 0, 0}, {0, 0, -8}), unlit({0.5f, 0.25f, 0}));
+    Material light = lambert({0, 0, 0});
+    light.emissive = glm::vec3(3);
+    stage.add(parallelogram({0, 0, 4}, {4, 0, 0}, {0, 0, -8}), light);
+    RenderSettings settings = settings_for(from_above(2), 9);
+    settings.exposure = -1;
+    settings.spp = 8;
+    for (Tonemap tonemap : {Tonemap::none, Tonemap::aces, Tonemap::neutral}) {
+        settings.tonemap = tonemap;
+        const Picture picture = render(stage, black, settings);
+        EXPECT_EQ(picture.encoded[20], 0xff0089bcu);  // sRGB of 0.5 and 0.25
+        EXPECT_EQ(picture.radiance[20], glm::vec4(0.5f, 0.25f, 0, 1));
+        // Across the edge: of one sort each sample, of both a share.
+        const double share = (3 - picture.radiance[22].x) / 2.5;
+        const glm::dvec3 lit = tone_curve(glm::dvec3((1 - share) * 1.5), tonemap);
+        for (int k = 0; k < 3; k++)
+            EXPECT_NEAR(picture.encoded[22] >> (8 * k) & 255,
+                        255 * linear_to_srgb(std::min(1.0, lit[k] + share * (k == 0   ? 0.5
+                                                                             : k == 1 ? 0.25
+                                                                                      : 0))),
+                        0.51);
+    }
 }
 
 }  // namespace

@@ -28,12 +28,18 @@ const std::vector<glm::vec3> kRow = {
     {0, 0, 0},           {0.001f, 0.002f, 0.003f}, {0.02f, 0.05f, 0.1f}, {0.2159f, 0.5f, 1}, {0.18f, 0.18f, 0.18f},
     {0.8f, 0.1f, 0.01f}, {2, 0.5f, 0.1f},          {30, 20, 10}};
 
+Material emitting(const glm::vec3& light) {
+    Material m = lambert({0, 0, 0});
+    m.emissive = light;
+    return m;
+}
+
 class EncodingTest : public PictureTest {
   protected:
-    RenderResult row(float exposure, Tonemap tonemap) {
+    RenderResult row(float exposure, Tonemap tonemap, Material (*material)(const glm::vec3&)) {
         Stage stage;
         for (size_t i = 0; i < kRow.size(); i++)
-            stage.add(parallelogram({float(i), 0, 0}, {1, 0, 0}, {0, 1, 0}), unlit(kRow[i]));
+            stage.add(parallelogram({float(i), 0, 0}, {1, 0, 0}, {0, 1, 0}), material(kRow[i]));
         RenderSettings settings = settings_for(orthographic({4, 0.5f, 3}, {4, 0.5f, 0}, 1));
         settings.width = 8;
         settings.height = 1;
@@ -45,13 +51,13 @@ class EncodingTest : public PictureTest {
 };
 
 TEST_F(EncodingTest, KnownRadianceGivesKnownBytes) {
-    const RenderResult plain = row(0, Tonemap::none);
+    const RenderResult plain = row(0, Tonemap::none, emitting);
     EXPECT_EQ(plain.encoded[0], 0xff000000u);
     EXPECT_EQ(plain.encoded[3], 0xffffbc80u);  // 0.2159, 0.5, 1: 128, 188, 255, red in the lowest byte
     for (float exposure : {0.f, 1.f, -2.5f})
         for (Tonemap curve : {Tonemap::none, Tonemap::aces, Tonemap::neutral}) {
             SCOPED_TRACE(fmt::format("exposure {}, curve {}", exposure, int(curve)));
-            const RenderResult picture = row(exposure, curve);
+            const RenderResult picture = row(exposure, curve, emitting);
             for (size_t i = 0; i < kRow.size(); i++) {
                 glm::dvec3 c = glm::dvec3(kRow[i]) * std::exp2(double(exposure));
                 if (curve == Tonemap::aces) c = aces(c);
@@ -63,6 +69,70 @@ TEST_F(EncodingTest, KnownRadianceGivesKnownBytes) {
                 EXPECT_TRUE(near(glm::dvec3(picture.radiance[i]), glm::dvec3(kRow[i]), 1e-5));
             }
         }
+}
+
+TEST_F(EncodingTest, UnlitColoursComeOutAsTheyAre) {
+    for (float exposure : {0.f, 1.f, -2.5f})
+        for (Tonemap curve : {Tonemap::none, Tonemap::aces, Tonemap::neutral}) {
+            SCOPED_TRACE(fmt::format("exposure {}, curve {}", exposure, int(curve)));
+            const RenderResult picture = row(exposure, curve, unlit);
+            for (size_t i = 0; i < kRow.size(); i++) {
+                for (int k = 0; k < 3; k++)
+                    EXPECT_NEAR(picture.encoded[i] >> (8 * k) & 255, encode(kRow[i][k]), 0.51) << i << " " << k;
+                EXPECT_TRUE(near(glm::dvec3(picture.radiance[i]), glm::dvec3(kRow[i]), 1e-5)) << "also as radiance";
+            }
+        }
+}
+
+/// Unlit 0.2, 0.5, 0.8 left of x = 0, a light of 3 on the right; one pixel across the edge.
+Stage unlit_beside_light() {
+    Stage stage;
+    stage.add(parallelogram({-4, -4, 0}, {4, 0, 0}, {0, 8, 0}), unlit({0.2f, 0.5f, 0.8f}));
+    stage.add(parallelogram({0, -4, 0}, {4, 0, 0}, {0, 8, 0}), emitting({3, 3, 3}));
+    return stage;
+}
+
+TEST_F(EncodingTest, AtEdgesUnlitColoursMixWithWhatTheCurveGives) {
+    const Stage stage = unlit_beside_light();
+    RenderSettings settings = settings_for(orthographic({0, 0, 3}, {0, 0, 0}, 2));
+    settings.width = settings.height = 1;
+    settings.spp = 64;
+    settings.exposure = -1;
+    const glm::dvec3 color(0.2, 0.5, 0.8);
+    for (const auto& [tonemap, curve] : {std::pair{Tonemap::aces, &aces}, std::pair{Tonemap::neutral, &neutral}}) {
+        settings.tonemap = tonemap;
+        const RenderResult picture = render(stage, black, settings);
+        // Half of the pixel each, to one of the samples.
+        EXPECT_TRUE(near(glm::dvec3(picture.radiance[0]), color * 0.5 + 1.5, 3.0 / 64));
+        const glm::dvec3 want = color * 0.5 + curve(glm::dvec3(0.75));
+        for (int k = 0; k < 3; k++) EXPECT_NEAR(picture.encoded[0] >> (8 * k) & 255, encode(want[k]), 4) << k;
+    }
+}
+
+TEST_F(EncodingTest, PostPassesChangeUnlitColoursToo) {
+    const Stage stage = unlit_beside_light();
+    RenderSettings settings = settings_for(orthographic({0, 0, 3}, {0, 0, 0}, 2), 16);
+    settings.spp = 3;
+    settings.tonemap = Tonemap::aces;
+    const RenderResult plain = render(stage, black, settings);
+    const auto renderer = renderer_for(stage, black);
+    renderer->add_post_pass([](Commands&, const Buffer&, const PictureSettings&) {});
+    EXPECT_EQ(renderer->render(settings).encoded, plain.encoded) << "encoded in a pass of its own, bit for bit";
+    renderer->add_post_pass(
+        [](Commands& commands, const Buffer& picture, const PictureSettings&) { commands.fill(picture, 0); });
+    for (const uint32_t pixel : renderer->render(settings).encoded) ASSERT_EQ(pixel, 0xff000000u);
+}
+
+TEST_F(EncodingTest, InAMirrorAnUnlitSurfaceIsALight) {
+    Stage stage;
+    stage.add(ground(5), plane_mirror());
+    stage.add(parallelogram({-50, 5, 50}, {0, 0, -100}, {100, 0, 0}), unlit({0.2f, 0.5f, 0.8f}));
+    RenderSettings settings = settings_for(orthographic({0, 3, 0.1f}, {0, 0, 0}, 1), 4);
+    settings.exposure = 1;
+    settings.tonemap = Tonemap::aces;
+    const RenderResult picture = render(stage, black, settings);
+    const glm::dvec3 want = aces(2.0 * glm::dvec3(0.2, 0.5, 0.8));
+    for (int k = 0; k < 3; k++) EXPECT_NEAR(picture.encoded[5] >> (8 * k) & 255, encode(want[k]), 0.6) << k;
 }
 
 TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {

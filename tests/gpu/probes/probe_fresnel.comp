@@ -11,7 +11,7 @@ Output probe(Input x) {
     Output o;
     const float cosine = -dot(x.incoming, x.normal);
     o.reflectance = fresnelDielectric(cosine, x.eta);
-    o.schlick = fresnelSchlick(vec3(0.04), cosine).x;
+    o.schlick = fresnelSchlick(vec3(0.04), 1.0, cosine).x;
     o.refracts = refractRay(x.incoming, x.normal, x.eta, o.refracted) ? 1u : 0u;
     return o;
 }

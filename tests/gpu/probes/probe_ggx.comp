@@ -1,10 +1,10 @@
-// GGX: a sampled normal, density and masking at a cosine, split-sum factors.
+// GGX: a sampled normal, density and masking at a cosine.
 #version 460
 #include "common/common.glsl"
 #include "path/shading.glsl"
 #include "probe.glsl"
 struct Input { vec3 view; float alpha; vec2 random; };
-struct Output { vec3 half_vector; float density, masking; vec3 environment; };
+struct Output { vec3 half_vector; float density, masking; };
 PROBE(Input, Output)
 
 Output probe(Input x) {
@@ -12,6 +12,5 @@ Output probe(Input x) {
     o.half_vector = sampleGgx(x.view, x.alpha, x.random);
     o.density = ggxDistribution(o.half_vector.z, x.alpha);
     o.masking = ggxMasking(x.view.z, x.alpha);
-    o.environment = environmentBrdf(vec3(0, 0.04, 1), sqrt(x.alpha), x.view.z);
     return o;
 }

@@ -1,0 +1,38 @@
+// What rough surfaces reflect of white light, by numerical integration in double precision. Private to src/reference.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "reference/surface.h"
+
+namespace peelray {
+
+/// Of each material, worked out when it is first asked for; threads may ask at once. The surfaces must outlive it.
+class Albedos {
+  public:
+    struct Means {
+        glm::dvec3 dielectric{0};        ///< share of the dielectric part
+        double normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
+        glm::dvec3 metal(const glm::dvec3& base_color) const { return base_color * normal + grazing; }
+    };
+
+    Albedos(size_t materials, const Surfaces& surfaces);
+
+    /// `cosine`: between the view and the surface's normal.
+    Means at(uint32_t material, double cosine) const;
+
+  private:
+    static constexpr size_t steps = 64;  ///< in the square root of the cosine
+    struct Table {
+        std::once_flag made;
+        std::array<Means, steps + 1> entries;
+    };
+
+    const Surfaces& surfaces_;
+    std::unique_ptr<Table[]> tables_;
+};
+
+}  // namespace peelray
