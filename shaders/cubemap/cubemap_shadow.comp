@@ -25,8 +25,9 @@ BUFFER(readonly, 18, vec4, split_sum)
 #include "path/lighting.glsl"
 
 /// Share of the light that arrives from light `index`, which lies in `direction`.
-float lampShare(uint index, Surface s, vec3 direction) {
+float lampShare(uint index, Surface s, SurfaceId from, vec3 direction) {
     if ((frame[0].effects & EFFECT_SHADOW) == 0u) return 1.0;
+    if (blocksItself(s, from, direction)) return 0.0;
     uint face = 6u * index;
     if (shadow_maps[face + 1u].size != 0u) {
         vec2 unused;
@@ -48,7 +49,7 @@ void main() {
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
         const vec3 light = lampLight(k, s, m, view, direction);
-        if (light != vec3(0)) sum += light * lampShare(k, s, direction);
+        if (light != vec3(0)) sum += light * lampShare(k, s, SurfaceId(hit.instance, hit.triangle), direction);
     }
     nodes[i].radiance += sum;
 }

@@ -160,10 +160,16 @@ Ray shadowRay(Surface s, vec3 direction, float reach) {
     return Ray(s.shadow_start + s.geometric * (s.error + s.offset), 0.0, direction, reach);
 }
 
-/// What that ray cannot hit: the surface where it starts, `from`, except where it passes its plane. There a triangle that is not
-/// part of a bulge blocks the light from behind it.
-SurfaceId shadowSkip(Surface s, vec3 direction, SurfaceId from) {
-    return dot(direction, s.geometric) >= 0.0 ? from : SurfaceId(from.instance, NO_TRIANGLE);
+/// Does that ray pass through the triangle `from` where it starts? On a bulge it passes the plane beside it; elsewhere the triangle is in
+/// the light's way, which comes from behind.
+bool blocksItself(Surface s, SurfaceId from, vec3 direction) {
+    const float slope = dot(direction, s.geometric);
+    if (slope >= 0.0) return false;
+    const vec3 crossing = s.shadow_start - direction * (dot(s.shadow_start - s.position, s.geometric) / slope);
+    vec3 a, b, c;
+    placedTriangle(from.instance, from.triangle, crossing, a, b, c);
+    const vec3 n = cross(b - a, c - a), weights = vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
+    return min(weights.x, min(weights.y, weights.z)) >= -OWN_TRIANGLE_RIM * dot(n, n);
 }
 
 #endif

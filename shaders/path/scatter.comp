@@ -99,13 +99,20 @@ void emitLight(uint index, Ray ray, SurfaceId from, vec3 light) {
     shadow_light[index] = light;
 }
 
+/// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
+vec3 arrivingLight(uint index, Surface s, GpuMaterial m, vec3 view, SurfaceId from, out vec3 direction) {
+    const vec3 light = lampLight(index, s, m, view, direction);
+    const bool blocked = light != vec3(0) && (frame[0].effects & EFFECT_SHADOW) != 0u && blocksItself(s, from, direction);
+    return blocked ? vec3(0) : light;
+}
+
 /// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
-vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, out uint rays, out uint sky_rays) {
+vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
     rays = sky_rays = 0u;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = lampLight(k, s, m, view, direction);
+        const vec3 light = arrivingLight(k, s, m, view, from, direction);
         if (light == vec3(0)) continue;
         if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
@@ -125,8 +132,8 @@ void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, Surf
     if ((frame[0].effects & EFFECT_SHADOW) != 0u)
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
-            const vec3 light = lampLight(k, s, m, view, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), shadowSkip(s, direction, from), light * share);
+            const vec3 light = arrivingLight(k, s, m, view, from, direction);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), from, light * share);
         }
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     const vec3 sky = skyLight(s, m, view);
@@ -200,7 +207,7 @@ void shadeHit(Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     if ((materials[c.surface.material].flags & MATERIAL_UNLIT) != 0u)
         c.node.flags |= NODE_UNLIT;
     else
-        c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.light_rays, sky_rays);
+        c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);

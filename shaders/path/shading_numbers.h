@@ -23,6 +23,9 @@
 // Cosine to a triangle's normal below which a corner's normal says nothing about the surface that the triangle stands
 // for.
 #define STRAY_NORMAL 0.1
+// A shadow ray that passes its own triangle's plane this close beside the triangle, in weights of the corners, still
+// passes through it.
+#define OWN_TRIANGLE_RIM 1e-4
 // Cosine to which shading normals are bent towards the viewer, and reflected directions lifted above the surface.
 #define LEAST_COSINE 1e-3
 // Cosine that shading takes for the viewer's at least.

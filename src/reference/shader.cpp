@@ -188,13 +188,13 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
             sum += reflected;
             continue;
         }
+        // A triangle that turns away from the light is itself in the way where it is no part of a bulge.
+        if (context_.surfaces.blocks_itself(s, triangle, direction)) continue;
         rays_.shadow++;
         const glm::dvec3 start = s.lit_start();
         const bool far = light.kind == Light::Kind::directional;
         const double reach = far ? infinity : glm::dot(glm::dvec3(light.position) - start, direction);
-        // A triangle that turns away from the light may itself be in the way: where it is no part of a bulge.
-        const bool faces = glm::dot(s.geometric, direction) >= 0;
-        sum += reflected * visibility(start, direction, reach, faces ? triangle : none);
+        sum += reflected * visibility(start, direction, reach, triangle);
     }
     return sum + sky_light(s, triangle, path);
 }

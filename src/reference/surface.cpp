@@ -98,6 +98,22 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     return s;
 }
 
+bool Surfaces::blocks_itself(const Surface& s, uint32_t triangle, const glm::dvec3& direction) const {
+    const double height = glm::dot(s.shadow_start - s.position, s.geometric), fall = -glm::dot(direction, s.geometric);
+    if (fall <= 0) return false;
+    // Where the ray meets the plane: weights of the corners as areas, against the whole triangle's.
+    const glm::dvec3 crossing = s.shadow_start + direction * (height / fall);
+    const glm::uvec3 corners = geometry_.triangles[triangle];
+    const glm::dvec3 winding = s.front ? s.geometric : -s.geometric;
+    const auto area = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        return glm::dot(glm::cross(b - a, c - a), winding);
+    };
+    const glm::dvec3 a = geometry_.positions[corners.x], b = geometry_.positions[corners.y],
+                     c = geometry_.positions[corners.z];
+    const double least = std::min({area(a, b, crossing), area(b, c, crossing), area(c, a, crossing)});
+    return least >= -OWN_TRIANGLE_RIM * area(a, b, c);
+}
+
 glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {
     size_t offset = 0;
     uint32_t width = environment_.width, height = environment_.height;

@@ -57,6 +57,8 @@ class Surfaces {
 
     /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction`.
     Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const;
+    /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
+    bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
     const Optics& optics(uint32_t material) const { return optics_[material]; }
     const Optics& optics_of_triangle(uint32_t triangle) const { return optics_[geometry_.materials[triangle]]; }
 

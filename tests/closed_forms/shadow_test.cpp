@@ -206,8 +206,8 @@ TEST_F(ShadowTest, TessellatedSphereIsLitAsTheSmoothOneIs) {
 }
 
 TEST_F(ShadowTest, BentNormalsLetNoLightThrough) {
-    // Light from below a sheet, which its normals would see: the sheet itself is in the way. Two large triangles; a
-    // dent and a bulge of sixteen.
+    // Light from below a sheet, which the normals of a dent would see: the triangles themselves are in the way,
+    // whichever of their sides are shown. Two large ones, then 32.
     const glm::dvec3 travel = glm::normalize(glm::dvec3(1, 0.1, 0.2));
     const auto bent = [](float amount, uint32_t n) {
         Primitive sheet;
@@ -225,17 +225,21 @@ TEST_F(ShadowTest, BentNormalsLetNoLightThrough) {
             }
         return sheet;
     };
-    for (const auto& [amount, squares] : {std::pair{0.5f, 1u}, {-0.5f, 1u}, {0.5f, 4u}, {-0.5f, 4u}}) {
-        Stage stage;
-        stage.add(bent(amount, squares), lambert({1, 1, 1}));
-        stage.sun(glm::vec3(travel), {3, 3, 3});
-        const RenderResult picture = render(stage, black, settings_for(from_above(3.6f)));
-        Tally dark;
-        for (size_t i = 0; i < picture.radiance.size(); i++)
-            dark.add(picture.radiance[i].x == 0,
-                     [&, i] { return fmt::format("pixel {},{}: {:.4f}", i % 64, i / 64, picture.radiance[i].x); });
-        SCOPED_TRACE(fmt::format("bent by {}, {} squares", amount, squares));
-        dark.expect(0, 4096);
+    for (uint32_t squares : {1u, 4u}) {
+        for (bool double_sided : {true, false}) {
+            SCOPED_TRACE(fmt::format("{} squares, double-sided {}", squares, double_sided));
+            Material white_paint = lambert({1, 1, 1});
+            white_paint.double_sided = double_sided;
+            Stage stage;
+            stage.add(bent(-0.5f, squares), white_paint);
+            stage.sun(glm::vec3(travel), {3, 3, 3});
+            const RenderResult picture = render(stage, black, settings_for(from_above(3.6f)));
+            Tally dark;
+            for (size_t i = 0; i < picture.radiance.size(); i++)
+                dark.add(picture.radiance[i].x == 0,
+                         [&, i] { return fmt::format("pixel {},{}: {:.4f}", i % 64, i / 64, picture.radiance[i].x); });
+            dark.expect(0, 4096);
+        }
     }
 }
 
