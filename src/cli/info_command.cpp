@@ -34,6 +34,9 @@ std::string describe(const Material& m) {
     if (m.transmission > 0)
         text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior,
                             m.thickness > 0 ? "volume" : "thin wall");
+    if (m.specular != 1 || m.specular_color != glm::vec3(1))
+        text += fmt::format(", specular {:.3g} times {:.3g} {:.3g} {:.3g}", m.specular, m.specular_color.x,
+                            m.specular_color.y, m.specular_color.z);
     if (m.unlit) text += ", unlit";
     if (is_single_sided(m)) text += ", front only";
     return text;
