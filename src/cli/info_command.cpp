@@ -10,6 +10,7 @@
 #include "loaders/load.h"
 #include "scene/scene.h"
 #include "scene/sidedness.h"
+#include "workspace/camera_choice.h"
 
 namespace peelray {
 namespace {
@@ -39,6 +40,26 @@ std::string describe(const Material& m) {
     return text;
 }
 
+std::string lens_of(const Camera& camera) {
+    return camera.orthographic_height > 0
+               ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
+               : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f);
+}
+
+/// What --camera chooses from, with its numbers.
+void print_cameras(const Scene& scene) {
+    fmt::print("cameras     {}\n", scene.cameras.size());
+    for (size_t i = 0; i < scene.cameras.size(); i++) {
+        const Camera& camera = scene.cameras[i];
+        const bool own = camera.node.empty() || camera.node == camera.name;
+        fmt::print("  {} {}{}: eye {:.4g} {:.4g} {:.4g}, {}\n", camera_label(scene.cameras, i), named(camera.name),
+                   own ? "" : fmt::format(" (node {})", named(camera.node)), camera.eye.x, camera.eye.y, camera.eye.z,
+                   lens_of(camera));
+    }
+    for (const Camera& camera : scene.unplaced_cameras)
+        fmt::print("  {} {}: on no node, without a place; {}\n", camera.number, named(camera.name), lens_of(camera));
+}
+
 const char* kind_of(const Light& light) {
     const char* kinds[] = {"directional", "point", "spot"};
     return kinds[int(light.kind)];
@@ -57,23 +78,18 @@ void run_info(const std::string& name) {
     fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y,
                geometry.lower.z, geometry.upper.x, geometry.upper.y, geometry.upper.z);
     fmt::print("nodes       {}\n", scene.nodes.size());
-    fmt::print("meshes      {} ({} primitives)\n", scene.meshes.size(), primitives);
+    fmt::print("meshes      {} ({})\n", scene.meshes.size(), counted("{} primitive{|s}", primitives));
     for (const Mesh& mesh : scene.meshes) {
         size_t count = 0;
         for (const Primitive& primitive : mesh.primitives) count += primitive.triangles.size();
-        fmt::print("  {}: {} triangles\n", named(mesh.name), count);
+        fmt::print("  {}: {}\n", named(mesh.name), counted("{} triangle{|s}", count));
     }
     fmt::print("materials   {}\n", scene.materials.size());
     for (const Material& material : scene.materials) fmt::print("  {}: {}\n", named(material.name), describe(material));
     fmt::print("textures    {}\n", scene.textures.size());
     for (const Texture& texture : scene.textures)
         fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
-    fmt::print("cameras     {}\n", scene.cameras.size());
-    for (const Camera& camera : scene.cameras)
-        fmt::print("  {}: eye {:.4g} {:.4g} {:.4g}, {}\n", named(camera.name), camera.eye.x, camera.eye.y, camera.eye.z,
-                   camera.orthographic_height > 0
-                       ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
-                       : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f));
+    print_cameras(scene);
     fmt::print("lights      {}\n", scene.lights.size());
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());

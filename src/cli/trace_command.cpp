@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/outputs.h"
@@ -148,9 +149,9 @@ void run_trace(const TraceArguments& a) {
         write_json(a.stats, trace_json(trace_stats(device, geometry, settings, traced_in, traced_scene.build(), traced,
                                                    a.any_hit)));
 
-    fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
+    fmt::print("{}: {}, {}", a.hits.string(), counted("{} ray{|s}", rays.size()), counted("{} hit{|s}", traced.found));
     if (by_khr)
-        fmt::print(", {} acceleration structures", traced_in.structures.bodies);
+        fmt::print(", {}", counted("{} acceleration structure{|s}", traced_in.structures.bodies));
     else
         fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_in.cubes));
     if (device.timestamp_period() > 0)

@@ -50,12 +50,12 @@ void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint3
 /// Writes an 8-bit PNG. `alpha` false drops the alpha channel.
 void write_png(const std::filesystem::path& path, const Image8& image, bool alpha = false);
 
-/// Fails early, before long work: throws Error if a file cannot be created at `path` (folder missing, not writable, is
-/// a folder). Leaves nothing behind and does not touch a file that is there.
+/// Fails early, before long work: throws Error if a file cannot be created at `path` (not writable, is a folder, has a
+/// file where a folder must be). Leaves nothing behind and does not touch a file that is there.
 void check_writable(const std::filesystem::path& path);
 
-/// Calls `write(temporary_path)` and renames the result to `path`; removes it if `write` throws. Throws Error if
-/// unwritable.
+/// Calls `write(temporary_path)` and renames the result to `path`. The folders that are missing are made first. Removes
+/// all of that if `write` throws. Throws Error if unwritable.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

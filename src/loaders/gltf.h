@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/text.h"
 #include "loaders/gltf_file.h"
 #include "loaders/load.h"
 #include "scene/scene.h"

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -79,9 +80,11 @@ class NodeReader {
             visited_[i] = true;
             push(model_.nodes[i].children, add_node(i, parent));
         }
+        sort_cameras();
         aim_cameras();
         if (const size_t count = loader_.file.nodes_placed_twice())
-            loader_.ignored["{} nodes with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
+            loader_
+                .ignored["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
                 count;
     }
 
@@ -118,7 +121,7 @@ class NodeReader {
         if (from.mesh >= 0 && !is_hidden) node.mesh = show_mesh(from.mesh, world);
         if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
             ++loader_.ignored
-                  ["{} nodes with another number of weights than their mesh has morph targets "
+                  ["{} node{|s} with another number of weights than {its|their} mesh has morph targets "
                    "(NODE_WEIGHTS_INVALID)"];
         if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
         if (const auto light = from.extensions.find("KHR_lights_punctual");
@@ -139,12 +142,12 @@ class NodeReader {
             const double length = std::hypot(std::hypot(from.rotation[0], from.rotation[1]),
                                              std::hypot(from.rotation[2], from.rotation[3]));
             if (std::abs(length - 1) > 0.005)
-                ++ignored["{} node rotations that are not of unit length scaled to it (ROTATION_NON_UNIT)"];
+                ++ignored["{} node rotation{|s} that {is|are} not of unit length scaled to it (ROTATION_NON_UNIT)"];
         }
         if (from.matrix.empty()) return;
         if (!is_placement(local))
             ++ignored
-                ["{} node matrices that no translation, rotation and scale make used as they are "
+                ["{} node matri{x|ces} that no translation, rotation and scale make used as {it is|they are} "
                  "(NODE_MATRIX_NON_TRS)"];
     }
 
@@ -209,15 +212,12 @@ class NodeReader {
         return mesh;
     }
 
-    int add_camera(size_t index, const Node& node, const glm::mat4& world) {
+    Camera camera_of(size_t index) const {
         const tinygltf::Camera& from = model_.cameras[index];
         const std::string where = loader_.file.where("cameras", index);
         Camera camera;
-        camera.name = from.name.empty() ? node.name : from.name;
-        const Pose pose(world);
-        camera.eye = pose.at;
-        camera.look = pose.at + pose.ahead;
-        camera.up = pose.up;
+        camera.name = from.name;
+        camera.number = static_cast<uint32_t>(index);
         if (from.type == "perspective") {
             camera.vertical_fov = static_cast<float>(from.perspective.yfov);
             if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
@@ -226,8 +226,41 @@ class NodeReader {
             camera.orthographic_height = 2 * std::abs(static_cast<float>(from.orthographic.ymag));
             if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", where);
         }
+        return camera;
+    }
+
+    int add_camera(size_t index, const Node& node, const glm::mat4& world) {
+        Camera camera = camera_of(index);
+        if (camera.name.empty()) camera.name = node.name;
+        camera.node = node.name;
+        const Pose pose(world);
+        camera.eye = pose.at;
+        camera.look = pose.at + pose.ahead;
+        camera.up = pose.up;
         loader_.scene.cameras.push_back(std::move(camera));
         return static_cast<int>(loader_.scene.cameras.size()) - 1;
+    }
+
+    /// By the file's numbers, and those that no node shows.
+    void sort_cameras() {
+        Scene& scene = loader_.scene;
+        std::vector<size_t> order(scene.cameras.size());
+        std::iota(order.begin(), order.end(), size_t(0));
+        std::stable_sort(order.begin(), order.end(),
+                         [&](size_t a, size_t b) { return scene.cameras[a].number < scene.cameras[b].number; });
+        std::vector<Camera> sorted;
+        std::vector<int> places(order.size());
+        for (const size_t i : order) {
+            places[i] = static_cast<int>(sorted.size());
+            sorted.push_back(std::move(scene.cameras[i]));
+        }
+        scene.cameras = std::move(sorted);
+        for (Node& node : scene.nodes)
+            if (node.camera >= 0) node.camera = places[static_cast<size_t>(node.camera)];
+        std::vector<bool> is_placed(model_.cameras.size());
+        for (const Camera& camera : scene.cameras) is_placed[camera.number] = true;
+        for (size_t i = 0; i < is_placed.size(); ++i)
+            if (!is_placed[i]) scene.unplaced_cameras.push_back(camera_of(i));
     }
 
     int add_light(size_t index, const Node& node, const glm::mat4& world) {

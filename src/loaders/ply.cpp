@@ -390,8 +390,8 @@ class PlyReader {
             return;
         }
         if (mesh_.uvs.values.empty()) {
-            note(fmt::format("{} textures have no effect: the file has no texture coordinates",
-                             header_.textures.size()));
+            note(counted("{} texture{|s} {has|have} no effect: the file has no texture coordinates",
+                         header_.textures.size()));
             mesh_.parts.clear();
             return;
         }
@@ -400,10 +400,11 @@ class PlyReader {
         } else {
             scene_.materials = {textured(header_.textures[0])};
             if (header_.textures.size() > 1)
-                note(fmt::format("{} textures have no effect: no face has a texnumber", header_.textures.size() - 1));
+                note(counted("{} texture{|s} {has|have} no effect: no face has a texnumber",
+                             header_.textures.size() - 1));
         }
         if (unknown_textures_)
-            note(fmt::format("{} faces name a texture that the file does not have", unknown_textures_));
+            note(counted("{} face{|s} {names|name} a texture that the file does not have", unknown_textures_));
     }
 
     Material textured(const std::string& name) {
@@ -430,13 +431,13 @@ class PlyReader {
     void note_rest() {
         if (body_.is_ascii() ? !file_.word().empty() : file_.left() > 0)
             note(body_.is_ascii() ? fmt::format("what follows the last element in line {} has no effect", file_.line())
-                                  : fmt::format("{} bytes after the last element have no effect", file_.left()));
+                                  : counted("{} byte{|s} after the last element {has|have} no effect", file_.left()));
         if (unfit_texcoords_)
-            note(fmt::format("{} lists of texture coordinates ignored, which do not have two per corner",
-                             unfit_texcoords_));
+            note(counted("{} list{|s} of texture coordinates ignored, which {does|do} not have two per corner",
+                         unfit_texcoords_));
         if (unfit_colors_)
-            note(fmt::format("{} lists of colours ignored, which do not have three or four numbers per corner",
-                             unfit_colors_));
+            note(counted("{} list{|s} of colours ignored, which {does|do} not have three or four numbers per corner",
+                         unfit_colors_));
         std::vector<std::string> unused;
         for (const PlyPlan& plan : plans_) {
             if (!plan.is_vertex && !plan.is_face && !plan.is_strip)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "loaders/triangulate.h"
 #include "scene/encoding.h"
 #include "scene/normals.h"
@@ -268,15 +269,16 @@ class Converter {
 
 void add_notes(const Counts& counts, std::vector<std::string>& notes) {
     const auto note = [&](uint64_t count, const char* text) {
-        if (count > 0) notes.push_back(fmt::format("{} {}", count, text));
+        if (count > 0) notes.push_back(counted(text, count));
     };
-    note(counts.too_few_corners, "polygons with fewer than three corners dropped");
-    note(counts.too_many_corners, "polygons with too many corners and dents cut as fans, which may overlap");
-    note(counts.unused_vertices, "vertices that no polygon uses dropped");
-    note(counts.bad_normals, "normals without direction replaced");
-    note(counts.bad_uvs, "texture coordinates that are not finite replaced by 0");
-    note(counts.bad_colors, "vertex colours outside of 0 to 1 limited to it");
-    note(counts.clear_colors, "vertex colours with an alpha below 1 drawn opaque");
+    note(counts.too_few_corners, "{} polygon{|s} with fewer than three corners dropped");
+    note(counts.too_many_corners,
+         "{} polygon{|s} with too many corners and dents cut as {a fan|fans}, which may overlap");
+    note(counts.unused_vertices, "{} vert{ex|ices} that no polygon uses dropped");
+    note(counts.bad_normals, "{} normal{|s} without direction replaced");
+    note(counts.bad_uvs, "{} texture coordinate{|s} that {is|are} not finite replaced by 0");
+    note(counts.bad_colors, "{} vertex colour{|s} outside of 0 to 1 limited to it");
+    note(counts.clear_colors, "{} vertex colour{|s} with an alpha below 1 drawn opaque");
 }
 
 }  // namespace

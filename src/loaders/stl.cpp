@@ -219,8 +219,9 @@ class BinaryStl {
         attributes_.reserve(count);
         for (uint32_t i = 0; i < count; ++i) read_facet(file_.take(facet_size));
         if (file_.left() > 0)
-            scene_.notes.push_back(
-                fmt::format("{} bytes after the last of {} facets have no effect", file_.left(), count));
+            scene_.notes.push_back(fmt::format("{} after the last of {} {} no effect",
+                                               counted("{} byte{|s}", file_.left()), counted("{} facet{|s}", count),
+                                               file_.left() == 1 ? "has" : "have"));
         add_colors();
         return std::move(mesh_);
     }
@@ -274,7 +275,7 @@ class BinaryStl {
             scene_.notes.push_back("the specular and ambient colours of the STL header have no effect");
         if (unknown > 0)
             scene_.notes.push_back(
-                fmt::format("{} facets have attributes that are no colours, without effect", unknown));
+                counted("{} facet{|s} {has|have} attributes that are no colours, without effect", unknown));
         scene_.materials.push_back(material);
     }
 

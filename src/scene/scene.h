@@ -103,6 +103,8 @@ struct Camera {
     glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
+    uint32_t number = 0;            ///< as the file counts its cameras; several nodes may show the same one
+    std::string node;               ///< name of the node that shows it; empty: it has none, or none shows it
 };
 
 struct Light {
@@ -164,8 +166,9 @@ struct Scene {
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;      ///< parents first; only what the file's default scene shows
-    std::vector<Camera> cameras;  ///< in world space, in the order in which the file's nodes show them
-    std::vector<Light> lights;    ///< in world space
+    std::vector<Camera> cameras;  ///< in world space, by number; of equal ones in the order of the nodes that show them
+    std::vector<Camera> unplaced_cameras;  ///< by number; no node shows them, so that they have a lens but no place
+    std::vector<Light> lights;             ///< in world space
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     Generated generated;                              ///< what is computed for every moment, if anything is

@@ -50,7 +50,8 @@ inline void add_view(SettingList& list, ViewArguments& a) {
         list, a.camera,
         {.name = "camera",
          .group = group,
-         .help = "a camera of the scene, see 'peelray info SCENE'; default: the first, or the whole scene in view",
+         .help = "a camera of the scene, by its name, its node's or its number in the file, see 'peelray info SCENE'; "
+                 "default: the first, or the whole scene in view",
          .form = "NAME|N"});
     add_setting(
         list, a.time,

@@ -1,23 +1,55 @@
 #include "workspace/camera_choice.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace peelray {
 namespace {
 
-const Camera& find_camera(const Scene& scene, const std::vector<Camera>& cameras, const std::string& name) {
-    if (cameras.empty())
-        fail("the scene '{}' has no cameras: leave {} out, or use {} and {}", scene.name, setting::camera, setting::eye,
-             setting::look);
+std::string name_or_none(const Camera& camera) {
+    return camera.name.empty() ? "(no name)" : camera.name;
+}
+
+/// "0: near, 1.0: flat, 1.1: flat": all that can be chosen.
+std::string list_of(const std::vector<Camera>& cameras) {
     std::string names;
-    for (size_t i = 0; i < cameras.size(); i++) {
-        if (cameras[i].name == name || std::to_string(i) == name) return cameras[i];
-        names += fmt::format("{}{}: {}", i ? ", " : "", i, cameras[i].name.empty() ? "(no name)" : cameras[i].name);
-    }
-    fail("the scene '{}' has no camera '{}': there is {} ({})", scene.name, name, names, setting::camera);
+    for (size_t i = 0; i < cameras.size(); i++)
+        names += fmt::format("{}{}: {}", i ? ", " : "", camera_label(cameras, i), name_or_none(cameras[i]));
+    return names;
+}
+
+const Camera* find_placed(const std::vector<Camera>& cameras, const std::string& name) {
+    for (const Camera& camera : cameras)
+        if (camera.name == name) return &camera;
+    for (const Camera& camera : cameras)
+        if (camera.node == name) return &camera;
+    for (size_t i = 0; i < cameras.size(); i++)
+        if (camera_label(cameras, i) == name || std::to_string(cameras[i].number) == name) return &cameras[i];
+    return nullptr;
+}
+
+const Camera& find_camera(const Scene& scene, const std::vector<Camera>& cameras, const std::string& name) {
+    if (const Camera* found = find_placed(cameras, name)) return *found;
+    const std::string instead =
+        cameras.empty() ? fmt::format("leave {} out, or use {} and {}", setting::camera, setting::eye, setting::look)
+                        : fmt::format("there is {} ({})", list_of(cameras), setting::camera);
+    if (const Camera* unplaced = find_placed(scene.unplaced_cameras, name))
+        fail("the scene '{}' shows its camera {} ({}) on no node, so that it has no place: {}", scene.name,
+             unplaced->number, name_or_none(*unplaced), instead);
+    if (cameras.empty()) fail("the scene '{}' has no cameras: {}", scene.name, instead);
+    fail("the scene '{}' has no camera '{}': {}", scene.name, name, instead);
 }
 
 }  // namespace
+
+std::string camera_label(const std::vector<Camera>& cameras, size_t index) {
+    const uint32_t number = cameras[index].number;
+    const auto is_same = [&](const Camera& camera) { return camera.number == number; };
+    if (std::count_if(cameras.begin(), cameras.end(), is_same) == 1) return std::to_string(number);
+    return fmt::format("{}.{}", number,
+                       std::count_if(cameras.begin(), cameras.begin() + std::ptrdiff_t(index), is_same));
+}
 
 Camera choose_camera(const PictureArguments& a, const Scene& scene, const std::vector<Camera>& cameras,
                      const Box& box) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/image.h"
 #include "loaders/load.h"
 #include "motion/animation.h"
@@ -91,10 +92,14 @@ Assembly PosedScene::assembly_of_moment() const {
 void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment, const Notes& notes) {
     const size_t count = geometry.triangles.size();
     if (geometry.zero_area == count && !is_moment)
-        fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
+        fail("{}: {} area; give a file with a surface", scene.name,
+             counted(count == 1 ? "its only triangle has no" : "none of its {} triangles has an", count));
     for (const std::string& text : scene.notes) note(notes, text);
     if (geometry.zero_area > 0)
-        note(notes, fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
+        note(notes,
+             fmt::format("{} of {} no area: {} can never be hit", geometry.zero_area,
+                         counted(geometry.zero_area == 1 ? "{} triangle{|s} has" : "{} triangle{|s} have", count),
+                         geometry.zero_area == 1 ? "it" : "they"));
     for (const std::string& extension : scene.extensions_unsupported)
         note(notes, fmt::format("the extension {} has no effect in this version", extension));
 }
