@@ -108,6 +108,23 @@ TEST_F(Usage, OfAnOptionGivenTwiceTheLastCounts) {
                 {"b.npy"});
 }
 
+TEST_F(Usage, WhatAMessageSuggestsWorks) {
+    put("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string scene = in("triangle.obj"), begin = "choose at most ";
+    const Outcome coarse = render(scene, {"--hit", "tolerance", "--tolerance", "5"});
+    const size_t at = coarse.err.find(begin);
+    ASSERT_NE(at, std::string::npos) << coarse.err;
+    const std::string most =
+        coarse.err.substr(at + begin.size(), coarse.err.find(' ', at + begin.size()) - at - begin.size());
+    expect_done(render(scene, {"--hit", "tolerance", "--tolerance", most}), {"a.png"});
+    std::filesystem::remove(out("a.png"));
+    expect_refused(render(scene, {"--depth", "16"}), 1,
+                   "use --depth 16 with --traversal two-level or mipmap, and with --hit tolerance or planar");
+    expect_done(render(scene, {"--depth", "16", "--traversal", "mipmap", "--hit", "planar", "--ldc", "64"}), {"a.png"});
+    std::filesystem::remove(out("a.png"));
+    expect_refused(run({"info", in("")}), 1, "not a regular file but a folder; name a scene in it");
+}
+
 TEST_F(Usage, ASceneWithoutACommand) {
     put("cube.obj", kCube);
     put("my notes.txt", "x");
