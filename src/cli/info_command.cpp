@@ -1,4 +1,5 @@
 // `peelray info` and `peelray devices`.
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -8,6 +9,7 @@
 #include "gpu/device.h"
 #include "loaders/files.h"
 #include "loaders/load.h"
+#include "scene/origin.h"
 #include "scene/scene.h"
 #include "scene/sidedness.h"
 #include "workspace/camera_choice.h"
@@ -40,6 +42,17 @@ std::string describe(const Material& m) {
     return text;
 }
 
+/// So many that a coordinate far from the origin tells as much of the scene as six near it do.
+int digits_of(const Scene& scene, const Geometry& geometry) {
+    const double extent = reach_of(geometry.upper - geometry.lower), reach = reach_of(scene.origin);
+    return reach > 0 && extent > 0 ? std::min(6 + int(std::ceil(std::log10(reach / extent))), 15) : 6;
+}
+
+std::string in_world(const glm::dvec3& p, const Scene& scene, int digits) {
+    const glm::dvec3 at = scene.origin + p;
+    return fmt::format("{:.{}g} {:.{}g} {:.{}g}", at.x, digits, at.y, digits, at.z, digits);
+}
+
 std::string lens_of(const Camera& camera) {
     return camera.orthographic_height > 0
                ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
@@ -47,13 +60,13 @@ std::string lens_of(const Camera& camera) {
 }
 
 /// What --camera chooses from, with its numbers.
-void print_cameras(const Scene& scene) {
+void print_cameras(const Scene& scene, int digits) {
     fmt::print("cameras     {}\n", scene.cameras.size());
     for (size_t i = 0; i < scene.cameras.size(); i++) {
         const Camera& camera = scene.cameras[i];
         const bool own = camera.node.empty() || camera.node == camera.name;
-        fmt::print("  {} {}{}: eye {:.4g} {:.4g} {:.4g}, {}\n", camera_label(scene.cameras, i), named(camera.name),
-                   own ? "" : fmt::format(" (node {})", named(camera.node)), camera.eye.x, camera.eye.y, camera.eye.z,
+        fmt::print("  {} {}{}: eye {}, {}\n", camera_label(scene.cameras, i), named(camera.name),
+                   own ? "" : fmt::format(" (node {})", named(camera.node)), in_world(camera.eye, scene, digits),
                    lens_of(camera));
     }
     for (const Camera& camera : scene.unplaced_cameras)
@@ -75,8 +88,9 @@ void run_info(const std::string& name) {
     fmt::print("scene       {}\n", scene.name);
     fmt::print("triangles   {} ({} without area)\n", geometry.triangles.size(), geometry.zero_area);
     fmt::print("vertices    {}\n", geometry.positions.size());
-    fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y,
-               geometry.lower.z, geometry.upper.x, geometry.upper.y, geometry.upper.z);
+    const int digits = digits_of(scene, geometry);
+    fmt::print("bounds      {}  to  {}\n", in_world(geometry.lower, scene, digits),
+               in_world(geometry.upper, scene, digits));
     fmt::print("nodes       {}\n", scene.nodes.size());
     fmt::print("meshes      {} ({})\n", scene.meshes.size(), counted("{} primitive{|s}", primitives));
     for (const Mesh& mesh : scene.meshes) {
@@ -89,7 +103,7 @@ void run_info(const std::string& name) {
     fmt::print("textures    {}\n", scene.textures.size());
     for (const Texture& texture : scene.textures)
         fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
-    print_cameras(scene);
+    print_cameras(scene, digits > 6 ? digits : 4);
     fmt::print("lights      {}\n", scene.lights.size());
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());

@@ -45,6 +45,7 @@ Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
     loader.read_nodes();
     loader.read_skins();
     loader.read_animations();
+    settle_origin(loader.scene, loader.exact_nodes);
     loader.write_notes();
     loader.scene.files = loader.file.files();
     return std::move(loader.scene);

@@ -1,5 +1,7 @@
 #include "loaders/obj.h"
 
+#include "scene/origin.h"
+
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -182,10 +184,12 @@ Scene load_obj(const std::filesystem::path& path) {
         const Bytes bytes = read_file(path);
         if (bytes.empty()) fail("{}: the file is empty", scene.name);
         file = parse_obj(as_text(bytes), scene.name);
+        if (const auto middle = far_middle(file.mesh)) file = parse_obj(as_text(bytes), scene.name, *middle);
     }
     scene.notes = std::move(file.notes);
     const std::vector<MtlConverter::UvTransform> transforms = add_materials(file, path.parent_path(), scene);
     add_polygon_mesh(std::move(file.mesh), scene);
+    settle_origin(scene);
     for (Mesh& mesh : scene.meshes)
         for (Primitive& primitive : mesh.primitives) {
             const auto& [scale, offset] = transforms[primitive.material];

@@ -37,7 +37,9 @@ struct Occurrences {
 
 class ObjReader {
   public:
-    ObjReader(std::string_view text, const std::string& name) : text_(text), name_(name), lines_(text) {
+    ObjReader(std::string_view text, const std::string& name, const glm::dvec3& origin)
+        : text_(text), name_(name), lines_(text) {
+        out_.mesh.origin = origin;
         out_.materials.emplace_back();
         // 30 bytes are a usual vertex or triangle; what is too much is given back in the end.
         out_.mesh.positions.reserve(std::min<size_t>(text.size() / 90, 1u << 28));
@@ -125,6 +127,7 @@ class ObjReader {
 
     void vertex(std::string_view rest) {
         std::array<float, 8> n;
+        const std::string_view text = rest;
         const size_t count = numbers(rest, n, vertex_name);
         std::vector<glm::vec3>& positions = out_.mesh.positions;
         if (positions.size() == no_value - 1) broken("more than {} vertices; split the scene", no_value - 1);
@@ -140,9 +143,18 @@ class ObjReader {
             position /= n[3];
             this->count(weighted_);
         }
+        if (out_.mesh.origin != glm::dvec3(0)) position = far_position(text, count == 4 ? n[3] : 1);
         positions.push_back(position);
         if (count == 5 || count == 8) this->count(surplus_);
         if (count == 6 || count == 7) color({n[3], n[4], n[5], count == 7 ? n[6] : 1});
+    }
+
+    /// A vertex whose floats would be too coarse: its first three numbers once more.
+    glm::vec3 far_position(std::string_view text, float weight) const {
+        glm::dvec3 p;
+        for (int k = 0; k < 3; ++k)
+            p[k] = to_number(take_word(text)).value_or(std::numeric_limits<double>::quiet_NaN());
+        return out_.mesh.relative(p / double(weight));
     }
 
     void color(glm::vec4 color) {
@@ -440,8 +452,8 @@ class ObjReader {
 
 }  // namespace
 
-ObjFile parse_obj(std::string_view text, const std::string& name) {
-    return ObjReader(text, name).read();
+ObjFile parse_obj(std::string_view text, const std::string& name, const glm::dvec3& origin) {
+    return ObjReader(text, name, origin).read();
 }
 
 }  // namespace peelray

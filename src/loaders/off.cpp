@@ -117,7 +117,9 @@ class OffColors {
 
 class OffReader {
   public:
-    OffReader(FileReader& file, Scene& scene) : file_(file), scene_(scene) {}
+    OffReader(FileReader& file, Scene& scene, const glm::dvec3& origin) : file_(file), scene_(scene) {
+        mesh_.origin = origin;
+    }
 
     PolygonMesh read() {
         file_.allow_comments();
@@ -241,7 +243,7 @@ class OffReader {
     void read_vertex() {
         glm::dvec4 p(0, 0, 0, 1);
         for (int k = 0; k < (homogeneous_ ? 4 : 3); ++k) p[k] = number();
-        mesh_.positions.emplace_back(p / p.w);
+        mesh_.positions.push_back(mesh_.relative(glm::dvec3(p / p.w)));
         if (normals_) {
             glm::vec3 normal;
             for (int k = 0; k < 3; ++k) normal[k] = static_cast<float>(number());
@@ -352,17 +354,10 @@ class OffReader {
 }  // namespace
 
 Scene load_off(const std::filesystem::path& path) {
-    Scene scene;
-    scene.name = printable(path.filename().string());
-    scene.files = {path};
-    PolygonMesh mesh;
-    {
-        FileReader file(path, scene.name);
+    return load_polygons(path, [](FileReader& file, Scene& scene, const glm::dvec3& origin) {
         file.find_line_ends();
-        mesh = OffReader(file, scene).read();
-    }
-    add_polygon_mesh(std::move(mesh), scene);
-    return scene;
+        return OffReader(file, scene, origin).read();
+    });
 }
 
 }  // namespace peelray

@@ -134,7 +134,7 @@ struct PlyPlan {
 
 using Slots = std::array<double, role_count>;
 
-glm::vec3 slot_vector(const Slots& slots, PlyRole first) {
+glm::dvec3 slot_vector(const Slots& slots, PlyRole first) {
     const auto i = static_cast<size_t>(first);
     return {slots[i], slots[i + 1], slots[i + 2]};
 }
@@ -168,8 +168,9 @@ glm::vec4 slot_color(const Slots& slots, const PlyPlan& plan) {
 /// Reads the body into a polygon mesh.
 class PlyReader {
   public:
-    PlyReader(FileReader& file, const PlyHeader& header, Scene& scene)
+    PlyReader(FileReader& file, const PlyHeader& header, Scene& scene, const glm::dvec3& origin)
         : file_(file), header_(header), body_(file, header.format), scene_(scene) {
+        mesh_.origin = origin;
         for (const PlyElement& element : header.elements) plans_.emplace_back(element);
         check_elements();
     }
@@ -296,8 +297,8 @@ class PlyReader {
     }
 
     void add_vertex(const PlyPlan& plan, const Slots& slots) {
-        mesh_.positions.push_back(slot_vector(slots, PlyRole::x));
-        if (plan.knows(PlyRole::nx)) mesh_.normals.values.push_back(slot_vector(slots, PlyRole::nx));
+        mesh_.positions.push_back(mesh_.relative(slot_vector(slots, PlyRole::x)));
+        if (plan.knows(PlyRole::nx)) mesh_.normals.values.emplace_back(slot_vector(slots, PlyRole::nx));
         if (plan.knows(PlyRole::u) && !texcoords_)
             mesh_.uvs.values.emplace_back(slots[static_cast<size_t>(PlyRole::u)],
                                           slots[static_cast<size_t>(PlyRole::v)]);
@@ -477,17 +478,10 @@ class PlyReader {
 }  // namespace
 
 Scene load_ply(const std::filesystem::path& path) {
-    Scene scene;
-    scene.name = printable(path.filename().string());
-    scene.files = {path};
-    PolygonMesh mesh;
-    {
-        FileReader file(path, scene.name);
+    return load_polygons(path, [](FileReader& file, Scene& scene, const glm::dvec3& origin) {
         const PlyHeader header = read_ply_header(file);
-        mesh = PlyReader(file, header, scene).read();
-    }
-    add_polygon_mesh(std::move(mesh), scene);
-    return scene;
+        return PlyReader(file, header, scene, origin).read();
+    });
 }
 
 }  // namespace peelray

@@ -13,7 +13,8 @@ namespace peelray {
 
 /// Where the camera stands, and when.
 struct ViewArguments {
-    std::optional<glm::vec3> eye, look, up;
+    std::optional<glm::dvec3> eye, look;  ///< in the world
+    std::optional<glm::vec3> up;
     std::optional<float> fov;  ///< degrees
     std::string camera;
     std::optional<double> time;  ///< seconds

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scene/origin.h"
 
 namespace peelray {
 namespace {
@@ -41,6 +42,13 @@ const Camera& find_camera(const Scene& scene, const std::vector<Camera>& cameras
     fail("the scene '{}' has no camera '{}': {}", scene.name, name, instead);
 }
 
+/// A point of the world in the coordinates of the scene; in single precision where that is fine enough.
+glm::dvec3 in_scene(const glm::dvec3& point, const Scene& scene, const Box& box) {
+    const glm::dvec3 p = point - scene.origin;
+    const bool far = is_far(reach_of(p), reach_of(box.upper - box.lower));
+    return scene.precise || far ? p : glm::dvec3(glm::vec3(p));
+}
+
 }  // namespace
 
 std::string camera_label(const std::vector<Camera>& cameras, size_t index) {
@@ -59,8 +67,9 @@ Camera choose_camera(const PictureArguments& a, const Scene& scene, const std::v
     else if (!a.eye && !a.look && !cameras.empty())
         camera = cameras.front();
     if (a.eye || a.look) camera.orthographic_height = 0;
-    if (a.look || a.eye) camera.look = a.look.value_or(0.5f * (box.lower + box.upper));
-    if (a.eye) camera.eye = *a.eye;
+    if (a.look) camera.look = in_scene(*a.look, scene, box);
+    if (a.eye && !a.look) camera.look = 0.5f * (box.lower + box.upper);
+    if (a.eye) camera.eye = in_scene(*a.eye, scene, box);
     if (a.up) camera.up = *a.up;
     if (a.fov) {
         camera.vertical_fov = *a.fov * 3.14159265f / 180;
