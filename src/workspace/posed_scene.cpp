@@ -23,9 +23,11 @@ std::string choose_animation(const PictureArguments& a, const Scene& scene, cons
     return "";
 }
 
-Environment choose_environment(const PictureArguments& a, const Scene& scene) {
+Environment choose_environment(const PictureArguments& a, const Scene& scene, const Notes& notes) {
     if (!a.env.empty()) {
-        const Image image = read_hdr(a.env);
+        std::string text;
+        const Image image = read_hdr(a.env, &text);
+        if (!text.empty()) note(notes, text);
         return image_environment(image.width, image.height, image.pixels);
     }
     if (a.background) return color_environment(*a.background);
@@ -53,7 +55,7 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     check_visible(geometry(), *scene_, time_.has_value(), notes);
     triangles_ = geometry().triangles.size();
     camera_ = choose_camera(settings_, *scene_, moment_.cameras, framed_);
-    environment_ = choose_environment(settings, *scene_);
+    environment_ = choose_environment(settings, *scene_, notes);
 }
 
 const Geometry& PosedScene::geometry() {
