@@ -146,7 +146,7 @@ Image crop_to_display(const std::filesystem::path& path, const Imath::Box2i& dat
 }
 
 /// From a file's primaries to CIE X, Y, Z: white, (1, 1, 1), is of luminance 1.
-glm::dmat3 to_xyz(const Imf::Chromaticities& c) {
+glm::dmat3 primaries_to_xyz(const Imf::Chromaticities& c) {
     const auto xyz = [](const Imath::V2f& xy) { return glm::dvec3(xy.x, xy.y, 1 - xy.x - xy.y) / double(xy.y); };
     const glm::dmat3 primaries(xyz(c.red), xyz(c.green), xyz(c.blue));
     const glm::dvec3 amounts = glm::inverse(primaries) * xyz(c.white);
@@ -155,11 +155,11 @@ glm::dmat3 to_xyz(const Imf::Chromaticities& c) {
 
 /// From a file's primaries to Rec. 709's. White stays white: colours are adapted as the eye is (Lindbloom, "Chromatic
 /// Adaptation", Bradford's matrix).
-glm::dmat3 to_rec709(const Imf::Chromaticities& from) {
+glm::dmat3 primaries_to_rec709(const Imf::Chromaticities& from) {
     const Imf::Chromaticities rec709;
     const glm::dmat3 cones =
         glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
-    const glm::dmat3 file = to_xyz(from), ours = to_xyz(rec709);
+    const glm::dmat3 file = primaries_to_xyz(from), ours = primaries_to_xyz(rec709);
     const glm::dvec3 gains = (cones * (ours * glm::dvec3(1))) / (cones * (file * glm::dvec3(1)));
     const glm::dmat3 scale(gains.x, 0, 0, 0, gains.y, 0, 0, 0, gains.z);
     return glm::inverse(ours) * glm::inverse(cones) * scale * cones * file;
@@ -173,7 +173,7 @@ void convert_primaries(const std::filesystem::path& path, const Imf::Header& hea
     if (near(from.red, rec709.red) && near(from.green, rec709.green) && near(from.blue, rec709.blue) &&
         near(from.white, rec709.white))
         return;
-    const glm::dmat3 matrix = to_rec709(from);
+    const glm::dmat3 matrix = primaries_to_rec709(from);
     double largest = 0;
     for (int i = 0; i < 9; i++) largest = std::max(largest, std::abs(matrix[i / 3][i % 3]));
     if (!(largest < 1e3)) {
