@@ -31,8 +31,8 @@ struct Image8 {
 /// CIE XYZ (with the white point D65: X, Y, Z of 0.95, 1, 1.09 make 1, 1, 1; Radiance's own tools write 179 times
 /// that); its EXPOSURE and COLORCORR factors are divided out. Every pixel comes out finite and ≥ 0: NaN and negative
 /// values become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error: missing, broken, not one
-/// of the two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all. An EXR's primaries
-/// become those of Rec. 709; `note`, if given: what was not understood.
+/// of the two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all. An EXR's
+/// primaries become those of Rec. 709; `note`, if given: what was not understood.
 Image read_hdr(const std::filesystem::path& path, std::string* note = nullptr);
 
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
