@@ -89,8 +89,8 @@ class AsciiStl {
   private:
     void read_statement(std::string_view word) {
         if (same_word(word, "vertex")) {
-            glm::vec3 position;
-            for (int k = 0; k < 3; ++k) position[k] = static_cast<float>(file_.number());
+            glm::dvec3 position;
+            for (int k = 0; k < 3; ++k) position[k] = file_.number();
             mesh_.corners.push_back(shared_.add(mesh_.relative(position)));
             ++corners_;
         } else if (same_word(word, "facet")) {
@@ -249,7 +249,7 @@ class BinaryStl {
         for (size_t k = 0; k < 3; ++k) {
             glm::vec3 position;
             std::memcpy(&position, bytes + 12 + k * 12, 12);
-            mesh_.corners.push_back(shared_.add(position));
+            mesh_.corners.push_back(shared_.add(mesh_.relative(position)));
         }
         uint16_t attribute = 0;
         std::memcpy(&attribute, bytes + 48, 2);

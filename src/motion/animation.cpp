@@ -155,8 +155,9 @@ Moment moment_of(const Scene& scene, const std::string& which, double time) {
     moment.worlds = world_matrices(scene, moment.locals);
     if (generates(scene, animations)) moment.generated_time = time;
     // As far ahead as at rest.
-    carry_along(scene, moment, moment.cameras, moment.lights,
-                [](const Camera& camera, const glm::dvec3&) { return glm::length(camera.look - camera.eye); });
+    carry_along(
+        scene, moment, moment.cameras, moment.lights,
+        [](const Camera& rest, const glm::dvec3&, const glm::dvec3&) { return glm::length(rest.look - rest.eye); });
     return moment;
 }
 

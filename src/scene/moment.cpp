@@ -36,8 +36,9 @@ std::vector<glm::mat4> world_matrices(const Scene& scene, const std::vector<glm:
     return {exact.begin(), exact.end()};
 }
 
-void carry_along(const Scene& scene, const Moment& moment, std::vector<Camera>& cameras, std::vector<Light>& lights,
-                 const std::function<double(const Camera&, const glm::dvec3& ahead)>& distance) {
+void carry_along(
+    const Scene& scene, const Moment& moment, std::vector<Camera>& cameras, std::vector<Light>& lights,
+    const std::function<double(const Camera& before, const glm::dvec3& eye, const glm::dvec3& ahead)>& distance) {
     std::vector<glm::dmat4> exact;
     if (scene.precise) exact = exact_world_matrices(scene, moment.locals);
     for (size_t i = 0; i < scene.nodes.size(); i++) {
@@ -45,8 +46,8 @@ void carry_along(const Scene& scene, const Moment& moment, std::vector<Camera>& 
         if (node.camera >= 0) {
             const BasicPose<double> pose(scene.precise ? exact[i] : glm::dmat4(moment.worlds[i]));
             Camera& camera = cameras[size_t(node.camera)];
+            camera.look = pose.at + pose.ahead * distance(camera, pose.at, pose.ahead);
             camera.eye = pose.at;
-            camera.look = pose.at + pose.ahead * distance(camera, pose.ahead);
             camera.up = pose.up;
         }
         if (node.light >= 0) {

@@ -35,9 +35,11 @@ std::vector<glm::mat4> world_matrices(const Scene& scene, const std::vector<glm:
 /// The same before they are rounded, of a scene that is `precise`.
 std::vector<glm::dmat4> exact_world_matrices(const Scene& scene, const std::vector<glm::dmat4>& locals);
 
-/// Puts the scene's cameras and lights where their nodes are. `distance`: from a camera to the point that it looks at.
-void carry_along(const Scene& scene, const Moment& moment, std::vector<Camera>& cameras, std::vector<Light>& lights,
-                 const std::function<double(const Camera&, const glm::dvec3& ahead)>& distance);
+/// Puts the scene's cameras and lights where their nodes are. `distance`: from a camera, as it was, to the point that
+/// it is to look at from `eye`.
+void carry_along(
+    const Scene& scene, const Moment& moment, std::vector<Camera>& cameras, std::vector<Light>& lights,
+    const std::function<double(const Camera& before, const glm::dvec3& eye, const glm::dvec3& ahead)>& distance);
 
 /// World-space triangles of the whole scene (see Geometry). Throws Error when there is no triangle, naming the scene.
 Geometry flatten(const Scene& scene, const Moment& moment);

@@ -196,10 +196,11 @@ void settle_origin(Scene& scene, const std::vector<ExactNode>& exact) {
     const Moment rest = at_rest(scene);
     const glm::dvec3 middle = scene.cameras.empty() ? glm::dvec3(0) : glm::dvec3(middle_of(scene, rest.worlds));
     // A glTF camera has no target; ours looks at the point of its axis that is nearest to the middle of the scene.
-    carry_along(scene, rest, scene.cameras, scene.lights, [&](const Camera& camera, const glm::dvec3& ahead) {
-        const double distance = glm::dot(middle - camera.eye, ahead);
-        return std::isfinite(distance) && distance > 1e-3 ? distance : 1;
-    });
+    carry_along(scene, rest, scene.cameras, scene.lights,
+                [&](const Camera&, const glm::dvec3& eye, const glm::dvec3& ahead) {
+                    const double distance = glm::dot(middle - eye, ahead);
+                    return std::isfinite(distance) && distance > 1e-3 ? distance : 1;
+                });
 }
 
 }  // namespace peelray
