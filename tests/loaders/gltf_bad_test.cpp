@@ -251,7 +251,7 @@ TEST(GltfBad, Hierarchy) {
     gltf["scenes"][0]["nodes"] = {0};
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 node");
     gltf["scene"] = 3;
-    EXPECT_MENTIONS(error_of(folder, gltf), "scenes");
+    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 scene");
 }
 
 TEST(GltfBad, RequiredExtensions) {

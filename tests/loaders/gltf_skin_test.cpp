@@ -154,9 +154,9 @@ TEST(GltfSkin, OddWeights) {
     EXPECT_FLOAT_EQ(height(0.5f, 1.5f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
     EXPECT_FLOAT_EQ(height(1e-30f, 3e-30f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
     EXPECT_FLOAT_EQ(height(1e38f, 3e38f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
-    EXPECT_FLOAT_EQ(height(-1, 1, "1 joint weights that are negative or not finite count as 0"), 2);
-    EXPECT_FLOAT_EQ(height(NAN, 1, "1 joint weights that are negative or not finite count as 0"), 2);
-    EXPECT_FLOAT_EQ(height(INFINITY, 1, "1 joint weights that are negative or not finite count as 0"), 2);
+    EXPECT_FLOAT_EQ(height(-1, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
+    EXPECT_FLOAT_EQ(height(NAN, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
+    EXPECT_FLOAT_EQ(height(INFINITY, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
     EXPECT_FLOAT_EQ(height(0, 0, "1 vertex that no joint holds follows its node"), 0);
     EXPECT_FLOAT_EQ(height(NAN, -2, "1 vertex that no joint holds follows its node"), 0);
     json gltf = weighted(0, 0);

@@ -136,11 +136,11 @@ TEST(ObjText, WhatHasNoEffectIsNoted) {
     };
     EXPECT_MENTIONS(first("l 1 2 3"), "1 line statement dropped, in line 4");
     EXPECT_MENTIONS(first("p 1 2\np 3"), "2 point statements dropped, the first in line 4");
-    EXPECT_MENTIONS(first("f 1 2"), "line statements");
+    EXPECT_MENTIONS(first("f 1 2"), "1 line statement dropped");
     EXPECT_MENTIONS(first("vp 0.5\ncstype bezier\ndeg 3\ncurv 0 1 1 2 3\nend"), "5 statements of free-form curves");
     EXPECT_MENTIONS(first("lod 3"), "\"lod\"");
     EXPECT_MENTIONS(first("bevel on"), "\"bevel\"");
-    EXPECT_MENTIONS(first("s 1"), "smoothing groups");
+    EXPECT_MENTIONS(first("s 1"), "1 smoothing group ignored");
     EXPECT_MENTIONS(first("s off"), "s off");
     EXPECT_MENTIONS(first("vertices follow"), "\"vertices\"");
     EXPECT_MENTIONS(first("usemtl gone"), "\"gone\"");
