@@ -42,15 +42,15 @@ std::string describe(const Material& m) {
     return text;
 }
 
-/// So many that a coordinate far from the origin tells as much of the scene as six near it do.
-int digits_of(const Scene& scene, const Geometry& geometry) {
-    const double extent = reach_of(geometry.upper - geometry.lower), reach = reach_of(scene.origin);
-    return reach > 0 && extent > 0 ? std::min(6 + int(std::ceil(std::log10(reach / extent))), 15) : 6;
-}
-
-std::string in_world(const glm::dvec3& p, const Scene& scene, int digits) {
-    const glm::dvec3 at = scene.origin + p;
-    return fmt::format("{:.{}g} {:.{}g} {:.{}g}", at.x, digits, at.y, digits, at.z, digits);
+/// A point of the scene in the world. Far from its origin, to the millionth part of what the scene measures; near it,
+/// with so many digits.
+std::string in_world(const glm::dvec3& p, const Scene& scene, const Geometry& geometry, int digits) {
+    const double extent = reach_of(geometry.upper - geometry.lower);
+    if (scene.origin == glm::dvec3(0) || !(extent > 0))
+        return fmt::format("{:.{}g} {:.{}g} {:.{}g}", p.x, digits, p.y, digits, p.z, digits);
+    const double step = std::pow(10, std::floor(std::log10(extent)) - 6);
+    const glm::dvec3 at = glm::round((scene.origin + p) / step) * step;
+    return fmt::format("{:.15g} {:.15g} {:.15g}", at.x, at.y, at.z);
 }
 
 std::string lens_of(const Camera& camera) {
@@ -60,13 +60,13 @@ std::string lens_of(const Camera& camera) {
 }
 
 /// What --camera chooses from, with its numbers.
-void print_cameras(const Scene& scene, int digits) {
+void print_cameras(const Scene& scene, const Geometry& geometry) {
     fmt::print("cameras     {}\n", scene.cameras.size());
     for (size_t i = 0; i < scene.cameras.size(); i++) {
         const Camera& camera = scene.cameras[i];
         const bool own = camera.node.empty() || camera.node == camera.name;
         fmt::print("  {} {}{}: eye {}, {}\n", camera_label(scene.cameras, i), named(camera.name),
-                   own ? "" : fmt::format(" (node {})", named(camera.node)), in_world(camera.eye, scene, digits),
+                   own ? "" : fmt::format(" (node {})", named(camera.node)), in_world(camera.eye, scene, geometry, 4),
                    lens_of(camera));
     }
     for (const Camera& camera : scene.unplaced_cameras)
@@ -88,9 +88,8 @@ void run_info(const std::string& name) {
     fmt::print("scene       {}\n", scene.name);
     fmt::print("triangles   {} ({} without area)\n", geometry.triangles.size(), geometry.zero_area);
     fmt::print("vertices    {}\n", geometry.positions.size());
-    const int digits = digits_of(scene, geometry);
-    fmt::print("bounds      {}  to  {}\n", in_world(geometry.lower, scene, digits),
-               in_world(geometry.upper, scene, digits));
+    fmt::print("bounds      {}  to  {}\n", in_world(geometry.lower, scene, geometry, 6),
+               in_world(geometry.upper, scene, geometry, 6));
     fmt::print("nodes       {}\n", scene.nodes.size());
     fmt::print("meshes      {} ({})\n", scene.meshes.size(), counted("{} primitive{|s}", primitives));
     for (const Mesh& mesh : scene.meshes) {
@@ -103,7 +102,7 @@ void run_info(const std::string& name) {
     fmt::print("textures    {}\n", scene.textures.size());
     for (const Texture& texture : scene.textures)
         fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
-    print_cameras(scene, digits > 6 ? digits : 4);
+    print_cameras(scene, geometry);
     fmt::print("lights      {}\n", scene.lights.size());
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());
