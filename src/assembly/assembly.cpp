@@ -87,12 +87,14 @@ class Assembler {
     void find_anchors() {
         for (size_t i = 0; i < scene_.nodes.size(); i++) {
             const Node& node = scene_.nodes[i];
-            const glm::mat4& local = moment_.locals[i];
+            const glm::mat4 local(moment_.locals[i]);
             const auto parent = size_t(node.parent);
             still_[i] = node.parent < 0
                             ? Still{-1, false, local}
                             : Still{still_[parent].anchor, still_[parent].scaled, still_[parent].offset * local};
-            if (motion_.moves[i]) still_[i] = {int(i), still_[i].scaled || motion_.scales[i], glm::mat4(1)};
+            // Far from the origin a detour over another node's space would add two large numbers.
+            const bool is_own = motion_.moves[i] || (scene_.precise && still_[i].anchor >= 0 && node.mesh >= 0);
+            if (is_own) still_[i] = {int(i), still_[i].scaled || motion_.scales[i], glm::mat4(1)};
             // What stands in the world needs no detour.
             if (still_[i].anchor < 0) still_[i].offset = worlds_[i];
         }

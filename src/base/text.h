@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -25,6 +26,32 @@ inline std::string printable(std::string_view text, size_t limit = 120) {
     std::string line;
     for (const char c : text.substr(0, limit)) line += static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
     return text.size() > limit ? line + "..." : line;
+}
+
+/// A sentence about a number of things: "{}" becomes the number, "{one|several}" the word that goes with it, "{{" and
+/// "}}" single braces.
+inline std::string counted(std::string_view sentence, uint64_t count) {
+    std::string line;
+    for (size_t i = 0; i < sentence.size(); i++) {
+        const char c = sentence[i];
+        if ((c == '{' || c == '}') && i + 1 < sentence.size() && sentence[i + 1] == c) {
+            line += sentence[i++];
+            continue;
+        }
+        const size_t end = c == '{' ? sentence.find('}', i) : std::string_view::npos;
+        if (end == std::string_view::npos) {
+            line += c;
+            continue;
+        }
+        const std::string_view choice = sentence.substr(i + 1, end - i - 1);
+        const size_t bar = choice.find('|');
+        line += choice.empty()                  ? std::to_string(count)
+                : bar == std::string_view::npos ? sentence.substr(i, end - i + 1)
+                : count == 1                    ? choice.substr(0, bar)
+                                                : choice.substr(bar + 1);
+        i = end;
+    }
+    return line;
 }
 
 }  // namespace peelray

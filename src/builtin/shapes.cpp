@@ -54,6 +54,7 @@ void SceneBuilder::light(Light light) {
 void SceneBuilder::camera(const glm::vec3& eye, const glm::vec3& look, float vertical_degrees) {
     Camera camera;
     camera.name = "default";
+    camera.number = uint32_t(scene_.cameras.size());
     camera.eye = eye;
     camera.look = look;
     camera.vertical_fov = glm::radians(vertical_degrees);

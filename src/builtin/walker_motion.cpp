@@ -144,9 +144,10 @@ Placement place_on_path(const WalkPath& path, float share) {
     Placement out;
     // Facing +z the middle of the circle lies to the left, at +x.
     const float angle = tau * share;
-    out.rotation = glm::angleAxis(angle, upwards);
+    const glm::quat rotation = glm::angleAxis(angle, upwards);
+    out.rotation = glm::dquat(rotation);
     // A millimetre above the floor: as much as the soles may dip where they bend.
-    out.translation = out.rotation * vec3(-path.radius, 0.001f, 0);
+    out.translation = rotation * vec3(-path.radius, 0.001f, 0);
     return out;
 }
 

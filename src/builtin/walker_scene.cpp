@@ -45,7 +45,8 @@ Animation sampled(const char* name, float duration, int keys, int first, Pose po
         add_key(out.channels[0], time, placement.translation);
         add_key(out.channels[1], time, at.translation(Joint::hips));
         for (size_t joint = 0; joint < joint_count; ++joint)
-            add_key(out.channels[2 + joint], time, joint == 0 ? placement.rotation : at.rotation(Joint(joint)));
+            add_key(out.channels[2 + joint], time,
+                    joint == 0 ? glm::quat(placement.rotation) : at.rotation(Joint(joint)));
     }
     return out;
 }

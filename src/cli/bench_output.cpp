@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/text.h"
 #include "cli/messages.h"
 #include "cli/stats_json.h"
 #include "image/image.h"
@@ -53,9 +54,11 @@ void BenchOutput::run(std::optional<size_t> in_all, const std::function<void()>&
     last(complete);
     write(complete);
     if (!complete)
-        fail("interrupted after {}{} rows{}", rows_.size(), in_all ? fmt::format(" of {}", *in_all) : "",
+        fail("interrupted after {}{}",
+             in_all ? fmt::format("{} of {}", rows_.size(), counted("{} row{|s}", *in_all))
+                    : counted("{} row{|s}", rows_.size()),
              arguments_.output.empty() ? "" : fmt::format(", which {} holds", arguments_.output.string()));
-    if (measured_ == 0) fail("none of the {} rows could be measured: {}", rows_.size(), reason_);
+    if (measured_ == 0) fail("none of {} could be measured: {}", counted("{} row{|s}", rows_.size()), reason_);
 }
 
 Json timing_json(const Timing& timing) {

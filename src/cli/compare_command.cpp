@@ -1,7 +1,6 @@
 // `peelray compare`.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -32,24 +31,6 @@ struct Entry {
     Image radiance;                     ///< empty: not known
     std::optional<PictureStats> stats;  ///< none: of another program's picture
 };
-
-/// As a POSIX shell takes it for one word.
-std::string quoted(const std::string& word) {
-    const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:,=+@%", c); };
-    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-    std::string out;
-    for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return fmt::format("'{}'", out);
-}
-
-std::string shell_line(const std::vector<std::string>& words) {
-    std::string line;
-    for (const std::string& word : words) {
-        if (!line.empty()) line += ' ';
-        line += quoted(word);
-    }
-    return line;
-}
 
 /// The command that renders one picture of the comparison.
 std::string render_command(const CompareArguments& a, const std::string& name, Tracer tracer,

@@ -1,4 +1,5 @@
 // `peelray info` and `peelray devices`.
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -8,8 +9,10 @@
 #include "gpu/device.h"
 #include "loaders/files.h"
 #include "loaders/load.h"
+#include "scene/origin.h"
 #include "scene/scene.h"
 #include "scene/sidedness.h"
+#include "workspace/camera_choice.h"
 
 namespace peelray {
 namespace {
@@ -42,6 +45,37 @@ std::string describe(const Material& m) {
     return text;
 }
 
+/// A point of the scene in the world. Far from its origin, to the millionth part of what the scene measures; near it,
+/// with so many digits.
+std::string in_world(const glm::dvec3& p, const Scene& scene, const Geometry& geometry, int digits) {
+    const double extent = reach_of(geometry.upper - geometry.lower);
+    if (scene.origin == glm::dvec3(0) || !(extent > 0))
+        return fmt::format("{:.{}g} {:.{}g} {:.{}g}", p.x, digits, p.y, digits, p.z, digits);
+    const double step = std::pow(10, std::floor(std::log10(extent)) - 6);
+    const glm::dvec3 at = glm::round((scene.origin + p) / step) * step;
+    return fmt::format("{:.15g} {:.15g} {:.15g}", at.x, at.y, at.z);
+}
+
+std::string lens_of(const Camera& camera) {
+    return camera.orthographic_height > 0
+               ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
+               : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f);
+}
+
+/// What --camera chooses from, with its numbers.
+void print_cameras(const Scene& scene, const Geometry& geometry) {
+    fmt::print("cameras     {}\n", scene.cameras.size());
+    for (size_t i = 0; i < scene.cameras.size(); i++) {
+        const Camera& camera = scene.cameras[i];
+        const bool own = camera.node.empty() || camera.node == camera.name;
+        fmt::print("  {} {}{}: eye {}, {}\n", camera_label(scene.cameras, i), named(camera.name),
+                   own ? "" : fmt::format(" (node {})", named(camera.node)), in_world(camera.eye, scene, geometry, 4),
+                   lens_of(camera));
+    }
+    for (const Camera& camera : scene.unplaced_cameras)
+        fmt::print("  {} {}: on no node, without a place; {}\n", camera.number, named(camera.name), lens_of(camera));
+}
+
 const char* kind_of(const Light& light) {
     const char* kinds[] = {"directional", "point", "spot"};
     return kinds[int(light.kind)];
@@ -57,26 +91,21 @@ void run_info(const std::string& name) {
     fmt::print("scene       {}\n", scene.name);
     fmt::print("triangles   {} ({} without area)\n", geometry.triangles.size(), geometry.zero_area);
     fmt::print("vertices    {}\n", geometry.positions.size());
-    fmt::print("bounds      {:.6g} {:.6g} {:.6g}  to  {:.6g} {:.6g} {:.6g}\n", geometry.lower.x, geometry.lower.y,
-               geometry.lower.z, geometry.upper.x, geometry.upper.y, geometry.upper.z);
+    fmt::print("bounds      {}  to  {}\n", in_world(geometry.lower, scene, geometry, 6),
+               in_world(geometry.upper, scene, geometry, 6));
     fmt::print("nodes       {}\n", scene.nodes.size());
-    fmt::print("meshes      {} ({} primitives)\n", scene.meshes.size(), primitives);
+    fmt::print("meshes      {} ({})\n", scene.meshes.size(), counted("{} primitive{|s}", primitives));
     for (const Mesh& mesh : scene.meshes) {
         size_t count = 0;
         for (const Primitive& primitive : mesh.primitives) count += primitive.triangles.size();
-        fmt::print("  {}: {} triangles\n", named(mesh.name), count);
+        fmt::print("  {}: {}\n", named(mesh.name), counted("{} triangle{|s}", count));
     }
     fmt::print("materials   {}\n", scene.materials.size());
     for (const Material& material : scene.materials) fmt::print("  {}: {}\n", named(material.name), describe(material));
     fmt::print("textures    {}\n", scene.textures.size());
     for (const Texture& texture : scene.textures)
         fmt::print("  {}: {}x{}\n", named(texture.name), texture.width, texture.height);
-    fmt::print("cameras     {}\n", scene.cameras.size());
-    for (const Camera& camera : scene.cameras)
-        fmt::print("  {}: eye {:.4g} {:.4g} {:.4g}, {}\n", named(camera.name), camera.eye.x, camera.eye.y, camera.eye.z,
-                   camera.orthographic_height > 0
-                       ? fmt::format("orthographic, height {:.4g}", camera.orthographic_height)
-                       : fmt::format("vertical field of view {:.1f} degrees", camera.vertical_fov * 57.29578f));
+    print_cameras(scene, geometry);
     fmt::print("lights      {}\n", scene.lights.size());
     for (const Light& light : scene.lights) fmt::print("  {}: {}\n", named(light.name), kind_of(light));
     fmt::print("animations  {}\n", scene.animations.size());

@@ -1,7 +1,9 @@
 #include "cli/messages.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <cstring>
 
 namespace peelray {
 
@@ -13,6 +15,23 @@ std::string one_line(std::string text) {
 
 std::string message_of(const Error& error) {
     return error.line("--");
+}
+
+std::string quoted(const std::string& word) {
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:,=+@%", c); };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string out;
+    for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return fmt::format("'{}'", out);
+}
+
+std::string shell_line(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) {
+        if (!line.empty()) line += ' ';
+        line += quoted(word);
+    }
+    return line;
 }
 
 void print_note(const std::string& text) {

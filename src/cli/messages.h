@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -11,6 +12,9 @@ namespace peelray {
 std::string one_line(std::string text);
 /// The line of an Error, with settings as their flags.
 std::string message_of(const Error& error);
+/// Words as a POSIX shell takes them: a line to type.
+std::string quoted(const std::string& word);
+std::string shell_line(const std::vector<std::string>& words);
 /// A line on standard error that is no complaint. Settings in it, as fmt prints a Setting, become their flags.
 void print_note(const std::string& text);
 

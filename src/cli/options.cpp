@@ -30,7 +30,8 @@ CLI::Option* add_option(CLI::App& app, const SettingEntry& entry) {
                 [take](const std::vector<std::string>& texts) { std::for_each(texts.begin(), texts.end(), take); },
                 info.help)
             ->allow_extra_args(false);
-    return app.add_option_function<std::string>(flags, take, info.help);
+    // As most programs have it, and so that a wrapper's options can be overruled.
+    return app.add_option_function<std::string>(flags, take, info.help)->take_last();
 }
 
 void add_options(CLI::App& app, const SettingList& list) {
@@ -151,7 +152,7 @@ std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments
         if (option->count() == 0) continue;
         given.push_back({entry.info.name, {flag_of(entry.info)}});
         if (!entry.is_flag)
-            for (const std::string& value : option->results()) given.back().words.push_back(value);
+            for (const std::string& value : option->reduced_results()) given.back().words.push_back(value);
     }
     return given;
 }

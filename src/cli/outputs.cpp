@@ -1,9 +1,17 @@
 #include "cli/outputs.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/error.h"
 #include "image/image.h"
 
 namespace peelray {
+
+/// Whole paths.
+static bool is_inside(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
 
 void check_outputs(const std::vector<std::filesystem::path>& outputs,
                    const std::vector<std::filesystem::path>& inputs) {
@@ -13,9 +21,14 @@ void check_outputs(const std::vector<std::filesystem::path>& outputs,
     };
     for (size_t i = 0; i < outputs.size(); i++) {
         check_writable(outputs[i]);
-        for (size_t k = 0; k < i; k++)
+        for (size_t k = 0; k < i; k++) {
             if (whole(outputs[k]) == whole(outputs[i]))
                 fail("{} would be written twice: give each output a name of its own", outputs[i].string());
+            for (const auto& [file, folder] : {std::pair(k, i), std::pair(i, k)})
+                if (is_inside(whole(outputs[file]), whole(outputs[folder])))
+                    fail("{} would be a file and the folder of {}: give each output a name of its own",
+                         outputs[folder].string(), outputs[file].string());
+        }
         for (const auto& input : inputs)
             if (!input.empty() && whole(input) == whole(outputs[i]))
                 fail("{} is an input and would be overwritten: name another output", input.string());

@@ -11,14 +11,35 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/scene_names.h"
 #include "cli/version.h"
 
 namespace peelray {
 namespace {
 
-/// What is wrong with the command line.
-std::string describe(const CLI::ParseError& error, const CLI::App& program) {
+bool is_output_option(const std::string& word) {
+    return word == "-o" || word.starts_with("--output") || (word.starts_with("-o") && word.size() > 2);
+}
+
+/// What to type, where somebody named a scene before any command or without one; empty: no scene was named.
+/// `words`: the command line.
+std::string advice_on_scene(std::vector<std::string> words, const CLI::App& program) {
+    if (words.empty() || !is_scene_name(words.front())) return "";
     const auto chosen = program.get_subcommands();
+    const std::string command = chosen.empty() ? "render" : chosen.front()->get_name();
+    words.erase(std::remove(words.begin() + 1, words.end(), command), words.end());
+    words.front() = scene_in(words.front());
+    if (command == "render" && std::none_of(words.begin(), words.end(), is_output_option))
+        words.insert(words.end(), {"-o", "picture.png"});
+    words.insert(words.begin(), {"peelray", command});
+    return shell_line(words);
+}
+
+/// What is wrong with the command line.
+std::string describe(const CLI::ParseError& error, const CLI::App& program, const std::vector<std::string>& words) {
+    const auto chosen = program.get_subcommands();
+    if (const std::string advice = advice_on_scene(words, program); !advice.empty())
+        return fmt::format("{} before the scene: {}", chosen.empty() ? "name a command" : "the command comes", advice);
     // What was not understood explains why something else seems missing.
     const auto rest = chosen.empty() ? program.remaining() : chosen.front()->remaining();
     const auto option = std::find_if(rest.begin(), rest.end(),
@@ -107,8 +128,9 @@ int run_program(int argc, const char* const* argv) {
             return 0;
         }
         const auto chosen = program.get_subcommands();
-        fmt::print(stderr, "peelray: {} (see 'peelray{}{} --help')\n", one_line(describe(error, program)),
-                   chosen.empty() ? "" : " ", chosen.empty() ? "" : chosen.front()->get_name());
+        fmt::print(stderr, "peelray: {} (see 'peelray{}{} --help')\n",
+                   one_line(describe(error, program, {argv + 1, argv + argc})), chosen.empty() ? "" : " ",
+                   chosen.empty() ? "" : chosen.front()->get_name());
         return 2;
     }
     try {

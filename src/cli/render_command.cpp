@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/outputs.h"
@@ -41,8 +42,8 @@ std::string summary_of(const PictureStats& stats) {
 void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
     const Picture& picture = made.picture;
     const double rays = double(picture.rays.primary + picture.rays.secondary());
-    fmt::print("{}: {}x{}, {} triangles, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width,
-               picture.height, triangles,
+    fmt::print("{}: {}x{}, {}, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width, picture.height,
+               counted("{} triangle{|s}", triangles),
                rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6),
                summary_of(made.stats), seconds, made.stats.machine.name);
 }

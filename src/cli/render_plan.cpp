@@ -28,8 +28,8 @@ MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings
 void check_counters(const RenderArguments& a) {
     const char* option = a.counters ? "--counters" : wants_costs(a) ? "--aov cost_..." : nullptr;
     if (option && a.tracing.tracer != Tracer::ldc)
-        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none", option,
-             name_of(a.tracing.tracer));
+        fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none; leave one of them out",
+             option, name_of(a.tracing.tracer));
     if (a.counters && a.stats.empty()) fail("what --counters counts goes into the stats: name a file (--stats)");
 }
 

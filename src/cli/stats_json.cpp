@@ -20,8 +20,15 @@ Json machine_json(const Machine& machine) {
             {"commit", build_commit()}};
 }
 
-static Json box_json(const glm::vec3& lower, const glm::vec3& upper) {
+template <typename T>
+static Json box_json(const glm::vec<3, T>& lower, const glm::vec<3, T>& upper) {
     return {{"lower", {lower.x, lower.y, lower.z}}, {"upper", {upper.x, upper.y, upper.z}}};
+}
+
+/// A box of the scene in the world, which takes double precision far from its origin.
+static Json box_json(const Box& box, const glm::dvec3& origin) {
+    if (origin == glm::dvec3(0)) return box_json(box.lower, box.upper);
+    return box_json(origin + glm::dvec3(box.lower), origin + glm::dvec3(box.upper));
 }
 
 /// One cube, in the space of its body.
@@ -44,11 +51,12 @@ static Json body_json(const LdcBody& body, uint32_t instances, bool fixed) {
 
 /// `shown`: instances of each body.
 static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody>& bodies,
-                       const std::vector<uint32_t>& shown, const Box& box, const CubeChoice& choice) {
+                       const std::vector<uint32_t>& shown, const Box& box, const glm::dvec3& origin,
+                       const CubeChoice& choice) {
     const bool by_pixel = choice.layout.by_pixel();
     Json json = {
         {"n", cubes.resolution},
-        {"box", box_json(box.lower, box.upper)},
+        {"box", box_json(box, origin)},
         {"builder", name_of(choice.layout.builder)},
         {"traversal", name_of(choice.layout.traversal)},
         {"block",
@@ -67,6 +75,8 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
         {"triangles_not_finite", cubes.counts.invalid},
         {"count", cubes.cubes()},
         {"bare_bodies", cubes.bare}};
+    // What the boxes of cubes are relative to.
+    if (origin != glm::dvec3(0)) json["origin"] = {origin.x, origin.y, origin.z};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);
@@ -164,7 +174,8 @@ static Json structures_json(const Structures::Stats& s, StructureUpdate update) 
 
 Json cubes_json(const PictureStats& stats) {
     const RenderStats& s = stats.render;
-    return stats.has_cubes() ? cubes_json(s.cubes, s.bodies, s.shown, stats.box, s.choice) : Json(nullptr);
+    return stats.has_cubes() ? cubes_json(s.cubes, s.bodies, s.shown, stats.box, stats.origin, s.choice)
+                             : Json(nullptr);
 }
 
 Json memory_bytes_json(const RenderStats& s) {
@@ -248,7 +259,7 @@ Json trace_json(const TraceStats& s) {
         json["khr"] = structures_json(*s.structures, StructureUpdate::keep);
         return json;
     }
-    json["ldc"] = cubes_json(s.cubes, s.bodies, s.shown, s.box, s.choice);
+    json["ldc"] = cubes_json(s.cubes, s.bodies, s.shown, s.box, s.origin, s.choice);
     json["memory"] = memory_json(s.memory, s.peak_memory);
     return json;
 }

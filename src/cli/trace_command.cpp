@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/outputs.h"
@@ -78,6 +79,17 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
     return result;
 }
 
+/// Rays of the world in the coordinates of the scene.
+std::vector<RayRecord> in_scene(std::vector<RayRecord> rays, const glm::dvec3& origin) {
+    if (origin == glm::dvec3(0)) return rays;
+    for (RayRecord& ray : rays) {
+        ray.ox = float(ray.ox - origin.x);
+        ray.oy = float(ray.oy - origin.y);
+        ray.oz = float(ray.oz - origin.z);
+    }
+    return rays;
+}
+
 TraceStats trace_stats(Device& device, const Geometry& geometry, const TracerChoice& choice,
                        const TracerStats& traced_in, const FrameMeter& build, const Traced& traced, bool any_hit) {
     TraceStats stats;
@@ -114,9 +126,10 @@ void run_trace(const TraceArguments& a) {
     for (const auto& more : {a.stats, a.counters})
         if (!more.empty()) outputs.push_back(more);
     check_outputs(outputs, {a.scene, a.rays});
-    const std::vector<RayRecord> rays = read_rays(a.rays);
+    std::vector<RayRecord> rays = read_rays(a.rays);
     Scene scene = load_scene(a.scene, {a.variant, a.point_size.value_or(0)});
     if (a.double_sided) show_both_sides(scene);
+    rays = in_scene(std::move(rays), scene.origin);
     const Moment rest = at_rest(scene);
     const Geometry geometry = flatten(scene, rest);
     check_visible(geometry, scene, false, print_note);
@@ -144,13 +157,15 @@ void run_trace(const TraceArguments& a) {
     }
     write_hits(a.hits, traced.hits);
     if (!a.counters.empty()) write_costs(a.counters, traced.costs);
-    if (!a.stats.empty())
-        write_json(a.stats, trace_json(trace_stats(device, geometry, settings, traced_in, traced_scene.build(), traced,
-                                                   a.any_hit)));
+    if (!a.stats.empty()) {
+        TraceStats stats = trace_stats(device, geometry, settings, traced_in, traced_scene.build(), traced, a.any_hit);
+        stats.origin = scene.origin;
+        write_json(a.stats, trace_json(stats));
+    }
 
-    fmt::print("{}: {} rays, {} hits", a.hits.string(), rays.size(), traced.found);
+    fmt::print("{}: {}, {}", a.hits.string(), counted("{} ray{|s}", rays.size()), counted("{} hit{|s}", traced.found));
     if (by_khr)
-        fmt::print(", {} acceleration structures", traced_in.structures.bodies);
+        fmt::print(", {}", counted("{} acceleration structure{|s}", traced_in.structures.bodies));
     else
         fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_in.cubes));
     if (device.timestamp_period() > 0)

@@ -24,7 +24,8 @@ std::string read_file(const std::filesystem::path& path);
 /// Writes all bytes through write_atomically(); a full disk is an Error, too.
 void store_file(const std::filesystem::path& path, std::string_view bytes);
 
-Image decode_exr(const std::filesystem::path& path, std::string_view bytes);
+/// `note`: what was not understood, if anything.
+Image decode_exr(const std::filesystem::path& path, std::string_view bytes, std::string& note);
 std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full);
 Image decode_radiance(const std::filesystem::path& path, std::string_view bytes);
 std::string encode_radiance(const Image& image);

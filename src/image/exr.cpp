@@ -1,5 +1,6 @@
 // OpenEXR: files of any writer in, our own out.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
@@ -8,10 +9,12 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -142,7 +145,46 @@ Image crop_to_display(const std::filesystem::path& path, const Imath::Box2i& dat
     return out;
 }
 
-Image decode(const std::filesystem::path& path, std::string_view bytes) {
+/// From a file's primaries to CIE X, Y, Z: white, (1, 1, 1), is of luminance 1.
+glm::dmat3 primaries_to_xyz(const Imf::Chromaticities& c) {
+    const auto xyz = [](const Imath::V2f& xy) { return glm::dvec3(xy.x, xy.y, 1 - xy.x - xy.y) / double(xy.y); };
+    const glm::dmat3 primaries(xyz(c.red), xyz(c.green), xyz(c.blue));
+    const glm::dvec3 amounts = glm::inverse(primaries) * xyz(c.white);
+    return {primaries[0] * amounts.x, primaries[1] * amounts.y, primaries[2] * amounts.z};
+}
+
+/// From a file's primaries to Rec. 709's. White stays white: colours are adapted as the eye is (Lindbloom, "Chromatic
+/// Adaptation", Bradford's matrix).
+glm::dmat3 primaries_to_rec709(const Imf::Chromaticities& from) {
+    const Imf::Chromaticities rec709;
+    const glm::dmat3 cones =
+        glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+    const glm::dmat3 file = primaries_to_xyz(from), ours = primaries_to_xyz(rec709);
+    const glm::dvec3 gains = (cones * (ours * glm::dvec3(1))) / (cones * (file * glm::dvec3(1)));
+    const glm::dmat3 scale(gains.x, 0, 0, 0, gains.y, 0, 0, 0, gains.z);
+    return glm::inverse(ours) * glm::inverse(cones) * scale * cones * file;
+}
+
+/// Pixels in the primaries of Rec. 709, where the file has others. Those on one line make no colours: `note` says so.
+void convert_primaries(const std::filesystem::path& path, const Imf::Header& header, Image& image, std::string& note) {
+    if (!Imf::hasChromaticities(header)) return;
+    const Imf::Chromaticities from = Imf::chromaticities(header), rec709;
+    const auto near = [](const Imath::V2f& a, const Imath::V2f& b) { return (a - b).length() < 1e-3f; };
+    if (near(from.red, rec709.red) && near(from.green, rec709.green) && near(from.blue, rec709.blue) &&
+        near(from.white, rec709.white))
+        return;
+    const glm::dmat3 matrix = primaries_to_rec709(from);
+    double largest = 0;
+    for (int i = 0; i < 9; i++) largest = std::max(largest, std::abs(matrix[i / 3][i % 3]));
+    if (!(largest < 1e3)) {
+        note = fmt::format("{}: its primaries (\"chromaticities\") span no colours: it is read as Rec. 709",
+                           path.filename().string());
+        return;
+    }
+    for (glm::vec4& pixel : image.pixels) pixel = glm::vec4(glm::vec3(matrix * glm::dvec3(pixel)), pixel.w);
+}
+
+Image decode(const std::filesystem::path& path, std::string_view bytes, std::string& note) {
     // A limit of the library, for the process: it guards what OpenEXR itself allocates while it reads headers.
     Imf::Header::setMaxImageSize(int(max_side), int(max_side));
     Imf::Header::setMaxTileSize(int(max_side), int(max_side));
@@ -168,6 +210,8 @@ Image decode(const std::filesystem::path& path, std::string_view bytes) {
     image.pixels.assign(size_t(image.width) * image.height, glm::vec4(0, 0, 0, 1));
     image = selection.luminance_chroma ? read_luminance_chroma(bytes, window, std::move(image))
                                        : read_channels(part, window, selection, std::move(image));
+    const bool is_grey = !selection.luminance_chroma && selection.names[1] == selection.names[0];
+    if (!is_grey) convert_primaries(path, part.header(), image, note);
     const bool has_alpha = selection.luminance_chroma ? has(channels, "A") : !selection.names[3].empty();
     return crop_to_display(path, window, part.header().displayWindow(), std::move(image), has_alpha);
 }
@@ -215,8 +259,8 @@ auto guarded(std::string_view doing, const std::filesystem::path& path, Work&& w
 
 }  // namespace
 
-Image decode_exr(const std::filesystem::path& path, std::string_view bytes) {
-    return guarded("read", path, [&] { return decode(path, bytes); });
+Image decode_exr(const std::filesystem::path& path, std::string_view bytes, std::string& note) {
+    return guarded("read", path, [&] { return decode(path, bytes, note); });
 }
 
 std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full) {

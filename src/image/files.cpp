@@ -7,6 +7,7 @@
 #include <chrono>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "image/codecs.h"
@@ -43,6 +44,51 @@ struct Temporary {
     }
 };
 
+/// Folders that were made for a file, removed again unless the file was written.
+class MadeFolders {
+  public:
+    MadeFolders(const fs::path& path, const fs::path& folder) {
+        std::error_code error;
+        std::vector<fs::path> missing;
+        for (fs::path each = folder; !each.empty() && !fs::exists(each, error); each = each.parent_path())
+            missing.push_back(each);
+        for (auto each = missing.rbegin(); each != missing.rend(); ++each) {
+            // Another process may make it at the same time.
+            if (fs::create_directory(*each, error)) made_.push_back(*each);
+            if (!error || fs::is_directory(*each)) continue;
+            remove();
+            fail("cannot write {}: cannot make the folder {}: {}; name a place that can be written", path.string(),
+                 each->string(), error.message());
+        }
+    }
+    ~MadeFolders() { remove(); }
+    MadeFolders(const MadeFolders&) = delete;
+    MadeFolders& operator=(const MadeFolders&) = delete;
+    void keep() { made_.clear(); }
+
+  private:
+    void remove() {
+        std::error_code ignored;
+        // One that holds something by now stays.
+        for (auto each = made_.rbegin(); each != made_.rend(); ++each) fs::remove(*each, ignored);
+    }
+
+    std::vector<fs::path> made_;
+};
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The nearest folder above a file that is there.
+fs::path standing_folder(const fs::path& file) {
+    std::error_code error;
+    fs::path folder = folder_of(file);
+    while (folder.has_relative_path() && fs::symlink_status(folder, error).type() == fs::file_type::not_found)
+        folder = folder_of(folder);
+    return folder;
+}
+
 /// The file that `path` stands for. A link is followed, so that the link stays; devices, pipes and folders are refused,
 /// since renaming onto /dev/null would replace it.
 fs::path destination(const fs::path& path) {
@@ -55,25 +101,24 @@ fs::path destination(const fs::path& path) {
         fail("cannot write {}: it is a folder; name a file in it", path.string());
     if (fs::exists(status) && !fs::is_regular_file(status))
         fail("cannot write {}: it is not a regular file; name another one", path.string());
-    const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    const fs::file_status parent = fs::status(folder, error);
-    if (parent.type() == fs::file_type::not_found)
-        fail("cannot write {}: there is no folder {}; make it or name another one", path.string(), folder.string());
-    if (fs::exists(parent) && !fs::is_directory(parent))
+    // What is not there yet may have ".." in it.
+    const bool resolve = fs::is_symlink(path, error) || !fs::exists(folder_of(path), error);
+    const fs::path target = resolve ? fs::weakly_canonical(path, error) : path;
+    const fs::path folder = standing_folder(target);
+    if (!fs::is_directory(folder, error))
         fail("cannot write {}: {} is not a folder; name another one", path.string(), folder.string());
     return target;
 }
 
 /// Creates an empty file beside `target` under a name that nobody else has. The extension stays: writers may choose by
-/// it. The name does not grow with the target's, which may be as long as the file system allows.
-fs::path reserve(const fs::path& path, const fs::path& target) {
+/// it. The name does not grow with the target's, which may be as long as the file system allows. `path` is for
+/// messages.
+fs::path reserve(const fs::path& path, const fs::path& target, const fs::path& folder) {
     static std::atomic<unsigned> counter{0};
     std::string extension = target.extension().string();
     if (extension.size() > 16) extension.clear();
     for (;;) {
-        const fs::path name =
-            target.parent_path() / fmt::format("{}{}-{}.tmp{}", kTemporaryPrefix, ::getpid(), counter++, extension);
+        const fs::path name = folder / fmt::format("{}{}-{}.tmp{}", kTemporaryPrefix, ::getpid(), counter++, extension);
         const Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (file.number >= 0) return name;
         if (errno != EEXIST)
@@ -98,12 +143,14 @@ int write_bytes(const fs::path& path, std::string_view bytes) {
 }  // namespace
 
 void check_writable(const fs::path& path) {
-    const Temporary probe{reserve(path, destination(path))};
+    const fs::path target = destination(path);
+    const Temporary probe{reserve(path, target, standing_folder(target))};
 }
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
     const fs::path target = destination(path);
-    Temporary temporary{reserve(path, target)};
+    MadeFolders folders(path, folder_of(target));
+    Temporary temporary{reserve(path, target, target.parent_path())};
     write(temporary.path);
     std::error_code error;
     const fs::file_status old = fs::status(target, error);
@@ -111,20 +158,26 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     fs::rename(temporary.path, target, error);
     if (error) fail("cannot write {}: {}; name a place that can be written", path.string(), error.message());
     temporary.renamed = true;
+    folders.keep();
 }
 
 bool write_if_absent(const fs::path& path, const std::function<void(const fs::path&)>& write) {
     const fs::path target = destination(path);
-    Temporary temporary{reserve(path, target)};
+    MadeFolders folders(path, folder_of(target));
+    Temporary temporary{reserve(path, target, target.parent_path())};
     write(temporary.path);
     // A link is refused where the name is taken, a rename is not.
-    if (::link(temporary.path.c_str(), target.c_str()) == 0) return true;
+    if (::link(temporary.path.c_str(), target.c_str()) == 0) {
+        folders.keep();
+        return true;
+    }
     if (errno == EEXIST) return false;
     std::error_code error;
     if (fs::exists(target, error)) return false;
     fs::rename(temporary.path, target, error);  // a file system without links
     if (error) fail("cannot write {}: {}; name a place that can be written", path.string(), error.message());
     temporary.renamed = true;
+    folders.keep();
     return true;
 }
 

@@ -21,15 +21,17 @@ float sanitised(float value) {
 
 }  // namespace
 
-Image read_hdr(const std::filesystem::path& path) {
+Image read_hdr(const std::filesystem::path& path, std::string* note) {
     const std::string bytes = read_file(path);
+    std::string text;
     Image image;
     if (bytes.starts_with(exr_magic))
-        image = decode_exr(path, bytes);
+        image = decode_exr(path, bytes, text);
     else if (bytes.starts_with("#?"))
         image = decode_radiance(path, bytes);
     else
         fail("cannot read {}: neither Radiance (.hdr) nor OpenEXR (.exr); convert it to one of them", path.string());
+    if (note) *note = text;
     for (glm::vec4& pixel : image.pixels)
         for (int c = 0; c < 4; ++c) pixel[c] = sanitised(pixel[c]);
     return image;

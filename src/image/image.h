@@ -31,8 +31,9 @@ struct Image8 {
 /// CIE XYZ (with the white point D65: X, Y, Z of 0.95, 1, 1.09 make 1, 1, 1; Radiance's own tools write 179 times
 /// that); its EXPOSURE and COLORCORR factors are divided out. Every pixel comes out finite and ≥ 0: NaN and negative
 /// values become 0, infinity the largest half (65504). No alpha in the file: 1. Throws Error: missing, broken, not one
-/// of the two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all.
-Image read_hdr(const std::filesystem::path& path);
+/// of the two, empty, deep data only, channels X, Y, Z, more than 2^16 pixels per side or 2^28 in all. An EXR's
+/// primaries become those of Rec. 709; `note`, if given: what was not understood.
+Image read_hdr(const std::filesystem::path& path, std::string* note = nullptr);
 
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
 Image8 read_ldr(const std::filesystem::path& path);
@@ -50,12 +51,12 @@ void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint3
 /// Writes an 8-bit PNG. `alpha` false drops the alpha channel.
 void write_png(const std::filesystem::path& path, const Image8& image, bool alpha = false);
 
-/// Fails early, before long work: throws Error if a file cannot be created at `path` (folder missing, not writable, is
-/// a folder). Leaves nothing behind and does not touch a file that is there.
+/// Fails early, before long work: throws Error if a file cannot be created at `path` (not writable, is a folder, has a
+/// file where a folder must be). Leaves nothing behind and does not touch a file that is there.
 void check_writable(const std::filesystem::path& path);
 
-/// Calls `write(temporary_path)` and renames the result to `path`; removes it if `write` throws. Throws Error if
-/// unwritable.
+/// Calls `write(temporary_path)` and renames the result to `path`. The folders that are missing are made first. Removes
+/// all of that if `write` throws. Throws Error if unwritable.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

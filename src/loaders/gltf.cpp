@@ -32,7 +32,7 @@ void GltfLoader::choose_variant(const std::string& name) {
 
 void GltfLoader::write_notes() {
     for (const auto& [sentence, count] : file.ignored()) ignored[sentence] += count;
-    for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
+    for (const auto& [sentence, count] : ignored) scene.notes.push_back(counted(sentence, count));
 }
 
 Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
@@ -45,6 +45,7 @@ Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
     loader.read_nodes();
     loader.read_skins();
     loader.read_animations();
+    settle_origin(loader.scene, loader.exact_nodes);
     loader.write_notes();
     loader.scene.files = loader.file.files();
     return std::move(loader.scene);

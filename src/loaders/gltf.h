@@ -8,8 +8,10 @@
 #include <tuple>
 #include <vector>
 
+#include "base/text.h"
 #include "loaders/gltf_file.h"
 #include "loaders/load.h"
+#include "scene/origin.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -32,6 +34,7 @@ struct GltfLoader {
     float point_size = 0;                                        ///< LoadOptions::point_size
     std::map<uint32_t, uint32_t> unlit_copies;                   ///< of materials, by those
     uint64_t triangles = 0;                                      ///< in all primitives read so far
+    std::vector<ExactNode> exact_nodes;                          ///< of all nodes
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 
@@ -51,7 +54,7 @@ struct GltfLoader {
     int material_of(uint32_t mesh, size_t primitive) const;
     /// Of a mesh's first primitive, as the file says.
     size_t target_count(uint32_t mesh) const;
-    void read_nodes();  // gltf_node.cpp; also reads the meshes, cameras and lights that they show
+    void read_nodes();  // gltf_node.cpp; also the meshes, cameras and lights that they show, the latter without places
 };
 
 /// Reads a .gltf or .glb file.

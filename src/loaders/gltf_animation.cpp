@@ -38,7 +38,7 @@ std::vector<glm::mat4> inverse_bind_matrices(GltfLoader& loader, int accessor, s
     const auto is_invalid = [](const glm::mat4& m) { return m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1; };
     if (const auto count = std::count_if(out.begin(), out.end(), is_invalid))
         loader.ignored
-            ["{} inverse bind matrices whose last row is not 0, 0, 0, 1 used as they are "
+            ["{} inverse bind matri{x|ces} whose last row is not 0, 0, 0, 1 used as {it is|they are} "
              "(ACCESSOR_INVALID_IBM)"] += size_t(count);
     return out;
 }
@@ -67,7 +67,7 @@ class AnimationReader {
             read_keys(from_.samplers[size_t(from.sampler)], channel, where);
             if (!moved.emplace(node, channel.path).second)
                 ++loader_.ignored
-                      ["{} animation channels that move what an earlier one moves already: the later one "
+                      ["{} animation channel{|s} that {moves|move} what an earlier one moves already: the later one "
                        "counts"];
             out.duration = std::max(out.duration, channel.times.back());
             out.channels.push_back(std::move(channel));
@@ -80,7 +80,7 @@ class AnimationReader {
     bool accept(const std::string& path, int node, AnimationChannel& channel) {
         using Path = AnimationChannel::Path;
         if (node < 0) {
-            ++loader_.ignored["{} animation channels of nodes that are not shown ignored"];
+            ++loader_.ignored["{} animation channel{|s} of nodes that are not shown ignored"];
             return false;
         }
         const Node& target = loader_.scene.nodes[size_t(node)];
@@ -94,15 +94,15 @@ class AnimationReader {
                     targets = std::max(targets, primitive.targets.size());
             channel.path = Path::weights;
             channel.width = uint32_t(targets);
-            if (targets == 0) ++loader_.ignored["{} animation channels of weights without morph targets ignored"];
+            if (targets == 0) ++loader_.ignored["{} animation channel{|s} of weights without morph targets ignored"];
             return targets > 0;
         }
         if (path != "translation" && path != "rotation" && path != "scale") {
-            ++loader_.ignored["{} animation channels of an unknown path ignored"];
+            ++loader_.ignored["{} animation channel{|s} of an unknown path ignored"];
             return false;
         }
         if (target.fixed) {
-            ++loader_.ignored["{} animation channels of nodes with a matrix ignored"];
+            ++loader_.ignored["{} animation channel{|s} of nodes with a matrix ignored"];
             return false;
         }
         channel.path = path == "translation" ? Path::translation : path == "rotation" ? Path::rotation : Path::scale;
@@ -141,7 +141,7 @@ class AnimationReader {
         if (channel.times.size() == 1 || channel.values.size() != channel.times.size() * per_key) return;
         channel.times.resize(1);
         channel.values.erase(channel.values.begin(), channel.values.end() - std::ptrdiff_t(per_key));
-        ++loader_.ignored["{} animation channels whose keys are all at 0 seconds: the last one counts"];
+        ++loader_.ignored["{} animation channel{|s} whose keys are all at 0 seconds: the last one counts"];
     }
 
     static void check_keys(const AnimationChannel& channel, size_t per_key, const std::string& where) {

@@ -333,13 +333,19 @@ class Checker {
         return static_cast<uint64_t>(value);
     }
 
+    /// "mesh" or "meshes", "buffer view" or "buffer views".
+    static std::string words_for(const std::string& list, bool one) {
+        const std::string words = list == "bufferViews" ? "buffer views" : list;
+        return one ? words.substr(0, words.size() - (list == "meshes" ? 2 : 1)) : words;
+    }
+
     json index(const json& in, const std::string& list, const std::string& where) const {
         json out = whole(in, where, INT_MAX);
         const auto found = lengths_.find(list);
         const size_t length = found == lengths_.end() ? 0 : found->second;
         if (out.get<uint64_t>() >= length)
             fail("{}: {} is out of range, the file has {} {}", where, out.get<uint64_t>(), length,
-                 list == "bufferViews" ? "buffer views" : list);
+                 words_for(list, length == 1));
         return out;
     }
 

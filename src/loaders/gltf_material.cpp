@@ -66,8 +66,8 @@ class MaterialReader {
         read_transmission();
         read_reflectance();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
-        ignore(from_.normalTexture.index, "{} normal maps ignored");
-        ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
+        ignore(from_.normalTexture.index, "{} normal map{|s} ignored");
+        ignore(from_.occlusionTexture.index, "{} occlusion texture{|s} ignored");
         read_alpha_mode();
         loader_.scene.materials.push_back(std::move(material_));
         loader_.uv_sources.push_back(uv_);
@@ -84,7 +84,7 @@ class MaterialReader {
         if (const auto mean = mean_of(pbr.metallicRoughnessTexture.index, false)) {
             material_.roughness *= mean->y;
             material_.metallic *= mean->z;
-            ++loader_.ignored["{} metallic-roughness textures replaced by their mean"];
+            ++loader_.ignored["{} metallic-roughness texture{|s} replaced by {its|their} mean"];
         }
     }
 
@@ -96,7 +96,7 @@ class MaterialReader {
         if (from_.alphaCutoff < 0)
             fail("{}: alphaCutoff {} must not be below 0", loader_.file.where("materials", index_), from_.alphaCutoff);
         if (mode == "MASK") material_.alpha_cutoff = static_cast<float>(from_.alphaCutoff);
-        if (mode == "BLEND") ++loader_.ignored["{} materials with alphaMode BLEND drawn opaque"];
+        if (mode == "BLEND") ++loader_.ignored["{} material{|s} with alphaMode BLEND drawn opaque"];
     }
 
     void read_emission() {
@@ -106,7 +106,7 @@ class MaterialReader {
         material_.emissive = glm::max(material_.emissive, glm::vec3(0));
         if (const auto mean = mean_of(from_.emissiveTexture.index, true)) {
             material_.emissive *= glm::vec3(*mean);
-            ++loader_.ignored["{} emissive textures replaced by their mean"];
+            ++loader_.ignored["{} emissive texture{|s} replaced by {its|their} mean"];
         }
     }
 
@@ -116,10 +116,10 @@ class MaterialReader {
         material_.transmission = unit(number(transmission, "transmissionFactor", 0));
         if (const auto mean = mean_of(texture_index(transmission, "transmissionTexture"), false)) {
             material_.transmission *= mean->x;
-            ++loader_.ignored["{} transmission textures replaced by their mean"];
+            ++loader_.ignored["{} transmission texture{|s} replaced by {its|their} mean"];
         }
         material_.thickness = std::max(0.f, static_cast<float>(number(volume, "thicknessFactor", 0)));
-        ignore(texture_index(volume, "thicknessTexture"), "{} thickness textures ignored");
+        ignore(texture_index(volume, "thicknessTexture"), "{} thickness texture{|s} ignored");
         material_.attenuation_color = glm::clamp(vector(volume, "attenuationColor", glm::vec3(1)), 0.f, 1.f);
         if (volume.Has("attenuationDistance")) {
             const double distance = number(volume, "attenuationDistance", 0);
@@ -171,7 +171,7 @@ class MaterialReader {
     std::optional<int> image_of(int texture) {
         const int image = model_.textures[static_cast<size_t>(texture)].source;
         if (image >= 0) return image;
-        ++loader_.ignored["{} textures without a PNG or JPEG source ignored"];
+        ++loader_.ignored["{} texture{|s} without a PNG or JPEG source ignored"];
         return std::nullopt;
     }
 
@@ -183,18 +183,21 @@ class MaterialReader {
         if (loader_.file.is_image_missing(*image)) {
             std::string file = printable(loader_.file.image_file(*image), 80);
             std::erase_if(file, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
-            ++loader_
-                  .ignored[is_base_color
-                               ? fmt::format("{{}} base colour textures left out, the image file {} is missing: the "
-                                             "factors are used",
-                                             file)
-                               : "{} textures other than of the base colour left out, their image files are missing"];
+            ++loader_.ignored[is_base_color
+                                  ? fmt::format(
+                                        "{{}} base colour texture{{|s}} left out, the image file {} is missing: the "
+                                        "factors are used",
+                                        file)
+                                  : "{} texture{|s} other than of the base colour left out, {its|their} image {file "
+                                    "is|files are} missing"];
             return std::nullopt;
         }
         const char* type = foreign_image_type(loader_.file.image_bytes(*image));
         if (!type) return image;
-        ++loader_.ignored[fmt::format(
-            "{{}} textures left out, their images are of the type {}, which is not read: the factors are used", type)];
+        ++loader_
+              .ignored[fmt::format("{{}} texture{{|s}} left out, {{its image is|their images are}} of the type {}, "
+                                   "which is not read: the factors are used",
+                                   type)];
         return std::nullopt;
     }
 

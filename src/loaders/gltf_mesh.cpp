@@ -37,11 +37,11 @@ class PrimitiveReader {
         if (from_.mode > TINYGLTF_MODE_TRIANGLE_FAN)
             fail("{}.mode: {} is no primitive mode (0 to 6)", where_, from_.mode);
         if (is_thin() && radius_ == 0) {
-            ++loader_.ignored["{} primitives of points or lines dropped"];
+            ++loader_.ignored["{} primitive{|s} of points or lines dropped"];
             return false;
         }
         if (!has("POSITION")) {
-            ++loader_.ignored["{} primitives without positions dropped"];
+            ++loader_.ignored["{} primitive{|s} without positions dropped"];
             return false;
         }
         out.material =
@@ -137,7 +137,7 @@ class PrimitiveReader {
             const uint32_t restart = type == 5121 ? UINT8_MAX : type == 5123 ? UINT16_MAX : UINT32_MAX;
             if (std::find(corners.begin(), corners.end(), restart) != corners.end())
                 ++loader_.ignored
-                      ["{} primitives whose largest index would restart them drawn with that vertex "
+                      ["{} primitive{|s} whose largest index would restart {it|them} drawn with that vertex "
                        "(ACCESSOR_INDEX_PRIMITIVE_RESTART)"];
         } else {
             corners.resize(out.positions.size());
@@ -161,7 +161,7 @@ class PrimitiveReader {
             if (mode == TINYGLTF_MODE_TRIANGLE_FAN) out.triangles[i] = {corners[i + 1], corners[i + 2], corners[0]};
         }
         if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3)
-            ++loader_.ignored["{} primitives with one or two indices too many"];
+            ++loader_.ignored["{} primitive{|s} with one or two indices too many"];
     }
 
     void read_attributes(Primitive& out) {
@@ -176,7 +176,7 @@ class PrimitiveReader {
         if (out.normals.empty())
             make_flat(out);
         else if (const size_t repaired = repair_normals(out))
-            loader_.ignored["{} normals without direction replaced"] += repaired;
+            loader_.ignored["{} normal{|s} without direction replaced"] += repaired;
     }
 
     void read_uvs(Primitive& out) {
@@ -219,7 +219,7 @@ class PrimitiveReader {
         });
         if (static_cast<size_t>(there) > read)
             ++loader_.ignored
-                  ["{} primitives with sets of joints or weights that lack their other half, or beyond "
+                  ["{} primitive{|s} with sets of joints or weights that lack their other half, or beyond "
                    "eight a vertex: those sets ignored"];
         rescale_weights(out);
     }
@@ -244,7 +244,8 @@ class PrimitiveReader {
                 out.joints[i].weights[slot] = is_weight ? w[i][k] : 0.f;
                 refused += !is_weight;
             }
-        if (refused) loader_.ignored["{} joint weights that are negative or not finite count as 0"] += refused;
+        if (refused)
+            loader_.ignored["{} joint weight{|s} that {is|are} negative or not finite {counts|count} as 0"] += refused;
     }
 
     void rescale_weights(Primitive& out) {
@@ -259,8 +260,8 @@ class PrimitiveReader {
             rescaled += std::abs(sum - 1) > 1e-2;
             for (float& weight : vertex.weights) weight = static_cast<float>(weight / sum);
         }
-        if (rescaled) loader_.ignored["{} vertices whose joint weights do not sum to one rescaled"] += rescaled;
-        if (unheld) loader_.ignored["{} vertices that no joint holds follow their node"] += unheld;
+        if (rescaled) loader_.ignored["{} vert{ex|ices} whose joint weights do not sum to one rescaled"] += rescaled;
+        if (unheld) loader_.ignored["{} vert{ex|ices} that no joint holds {follows its|follow their} node"] += unheld;
     }
 
     void read_targets(Primitive& out) {
@@ -314,10 +315,10 @@ void GltfLoader::read_mesh(uint32_t index, double scale) {
     const size_t targets = target_count(index);
     if (std::any_of(primitives.begin(), primitives.end(), [&](const auto& p) { return p.targets.size() != targets; }))
         ++ignored
-            ["{} meshes whose primitives have unequal numbers of morph targets "
+            ["{} mesh{|es} whose primitives have unequal numbers of morph targets "
              "(MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT)"];
     if (!mesh.weights.empty() && mesh.weights.size() != targets)
-        ++ignored["{} meshes with another number of weights than of morph targets (MESH_INVALID_WEIGHTS_COUNT)"];
+        ++ignored["{} mesh{|es} with another number of weights than of morph targets (MESH_INVALID_WEIGHTS_COUNT)"];
     for (size_t i = 0; i < primitives.size(); ++i) {
         const std::string where = fmt::format("{}.primitives[{}]", file.where("meshes", index), i);
         Primitive out;

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "base/text.h"
 #include "loaders/gltf.h"
-#include "scene/transform.h"
 
 namespace peelray {
 
@@ -32,11 +32,29 @@ glm::quat rotation_of(const T* xyzw) {
     return length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
 }
 
+/// As far as floats go; ExactNode has the rest.
 Placement placement_of(const tinygltf::Node& from) {
     Placement out;
-    if (!from.rotation.empty()) out.rotation = rotation_of(from.rotation.data());
+    if (!from.rotation.empty()) out.rotation = glm::dquat(rotation_of(from.rotation.data()));
     out.translation = to_vec3(from.translation, glm::vec3(0));
     out.scale = to_vec3(from.scale, glm::vec3(1));
+    return out;
+}
+
+glm::dvec3 to_dvec3(const std::vector<double>& v, const glm::dvec3& missing) {
+    return v.empty() ? missing : glm::dvec3(v[0], v[1], v[2]);
+}
+
+ExactNode exact_node(const tinygltf::Node& from) {
+    ExactNode out;
+    out.rest.translation = to_dvec3(from.translation, glm::dvec3(0));
+    out.rest.scale = to_dvec3(from.scale, glm::dvec3(1));
+    if (const std::vector<double>& r = from.rotation; !r.empty()) {
+        const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+        const double length = glm::length(rotation);
+        if (length > 0 && std::isfinite(length)) out.rest.rotation = rotation / length;
+    }
+    out.local = from.matrix.empty() ? out.rest.matrix(true) : glm::make_mat4(from.matrix.data());
     return out;
 }
 
@@ -79,9 +97,10 @@ class NodeReader {
             visited_[i] = true;
             push(model_.nodes[i].children, add_node(i, parent));
         }
-        aim_cameras();
+        sort_cameras();
         if (const size_t count = loader_.file.nodes_placed_twice())
-            loader_.ignored["{} nodes with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
+            loader_
+                .ignored["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
                 count;
     }
 
@@ -105,27 +124,29 @@ class NodeReader {
         node.source = static_cast<int>(index);
         node.fixed = !from.matrix.empty();
         node.rest = placement_of(from);
-        node.local = node.rest.matrix();
+        glm::mat4 local(node.rest.matrix());
         for (int i = 0; i < 16 && node.fixed; ++i)
-            node.local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
-        note_transform(from, node.local);
+            local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
+        node.local = glm::dmat4(local);
+        note_transform(from, local);
         node.skin = from.skin;
         node.weights.assign(from.weights.begin(), from.weights.end());
-        const glm::mat4 world = parent < 0 ? node.local : worlds_[static_cast<size_t>(parent)] * node.local;
+        const glm::mat4 world = parent < 0 ? local : worlds_[static_cast<size_t>(parent)] * local;
         check_finite(world, loader_.file.where("nodes", index));
         const bool is_hidden = is_node_hidden(from) || (parent >= 0 && hidden_[static_cast<size_t>(parent)]);
         hidden_.push_back(is_hidden);
         if (from.mesh >= 0 && !is_hidden) node.mesh = show_mesh(from.mesh, world);
         if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
             ++loader_.ignored
-                  ["{} nodes with another number of weights than their mesh has morph targets "
+                  ["{} node{|s} with another number of weights than {its|their} mesh has morph targets "
                    "(NODE_WEIGHTS_INVALID)"];
-        if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node, world);
+        if (from.camera >= 0) node.camera = add_camera(static_cast<size_t>(from.camera), node);
         if (const auto light = from.extensions.find("KHR_lights_punctual");
             light != from.extensions.end() && light->second.Has("light") && !is_hidden)
-            node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node, world);
-        const std::vector<glm::mat4> instances = is_hidden ? std::vector<glm::mat4>() : instances_of(index);
+            node.light = add_light(static_cast<size_t>(light->second.Get("light").GetNumberAsInt()), node);
+        const std::vector<Placement> instances = is_hidden ? std::vector<Placement>() : instances_of(index);
         loader_.scene.nodes.push_back(std::move(node));
+        loader_.exact_nodes.push_back(exact_node(from));
         worlds_.push_back(world);
         const int added = static_cast<int>(worlds_.size()) - 1;
         if (!instances.empty()) add_instances(added, instances);
@@ -139,17 +160,17 @@ class NodeReader {
             const double length = std::hypot(std::hypot(from.rotation[0], from.rotation[1]),
                                              std::hypot(from.rotation[2], from.rotation[3]));
             if (std::abs(length - 1) > 0.005)
-                ++ignored["{} node rotations that are not of unit length scaled to it (ROTATION_NON_UNIT)"];
+                ++ignored["{} node rotation{|s} that {is|are} not of unit length scaled to it (ROTATION_NON_UNIT)"];
         }
         if (from.matrix.empty()) return;
         if (!is_placement(local))
             ++ignored
-                ["{} node matrices that no translation, rotation and scale make used as they are "
+                ["{} node matri{x|ces} that no translation, rotation and scale make used as {it is|they are} "
                  "(NODE_MATRIX_NON_TRS)"];
     }
 
     /// EXT_mesh_gpu_instancing: transforms inside of the node; none: the mesh is shown once.
-    std::vector<glm::mat4> instances_of(size_t index) {
+    std::vector<Placement> instances_of(size_t index) {
         const tinygltf::Node& from = model_.nodes[index];
         const auto extension = from.extensions.find("EXT_mesh_gpu_instancing");
         if (extension == from.extensions.end() || from.mesh < 0) return {};
@@ -170,20 +191,20 @@ class NodeReader {
         };
         const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                                  scales = read("SCALE", 3);
-        std::vector<glm::mat4> out;
+        std::vector<Placement> out;
         for (size_t i = 0; i < count.value_or(0); ++i) {
             Placement at;
             if (!translations.empty()) at.translation = glm::make_vec3(&translations[3 * i]);
-            if (!rotations.empty()) at.rotation = rotation_of(&rotations[4 * i]);
+            if (!rotations.empty()) at.rotation = glm::dquat(rotation_of(&rotations[4 * i]));
             if (!scales.empty()) at.scale = glm::make_vec3(&scales[3 * i]);
-            out.push_back(at.matrix());
-            check_finite(out.back(), fmt::format("{}: instance {}", where, i));
+            out.push_back(at);
+            check_finite(glm::mat4(at.matrix()), fmt::format("{}: instance {}", where, i));
         }
         return out;
     }
 
     /// The node's mesh, shown by children that stand where the instances are.
-    void add_instances(int parent, const std::vector<glm::mat4>& instances) {
+    void add_instances(int parent, const std::vector<Placement>& instances) {
         const auto p = static_cast<size_t>(parent);
         Node node;
         node.name = loader_.scene.nodes[p].name;
@@ -192,10 +213,11 @@ class NodeReader {
         node.skin = std::exchange(loader_.scene.nodes[p].skin, -1);
         node.weights = loader_.scene.nodes[p].weights;
         node.is_instance = true;
-        for (const glm::mat4& instance : instances) {
-            node.local = instance;
+        for (const Placement& instance : instances) {
+            node.local = instance.matrix();
             loader_.scene.nodes.push_back(node);
-            worlds_.push_back(worlds_[p] * instance);
+            loader_.exact_nodes.push_back({instance.matrix(true), {}});
+            worlds_.push_back(worlds_[p] * glm::mat4(node.local));
             hidden_.push_back(false);
         }
     }
@@ -209,15 +231,12 @@ class NodeReader {
         return mesh;
     }
 
-    int add_camera(size_t index, const Node& node, const glm::mat4& world) {
+    Camera camera_of(size_t index) const {
         const tinygltf::Camera& from = model_.cameras[index];
         const std::string where = loader_.file.where("cameras", index);
         Camera camera;
-        camera.name = from.name.empty() ? node.name : from.name;
-        const Pose pose(world);
-        camera.eye = pose.at;
-        camera.look = pose.at + pose.ahead;
-        camera.up = pose.up;
+        camera.name = from.name;
+        camera.number = static_cast<uint32_t>(index);
         if (from.type == "perspective") {
             camera.vertical_fov = static_cast<float>(from.perspective.yfov);
             if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
@@ -226,11 +245,40 @@ class NodeReader {
             camera.orthographic_height = 2 * std::abs(static_cast<float>(from.orthographic.ymag));
             if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", where);
         }
+        return camera;
+    }
+
+    int add_camera(size_t index, const Node& node) {
+        Camera camera = camera_of(index);
+        if (camera.name.empty()) camera.name = node.name;
+        camera.node = node.name;
         loader_.scene.cameras.push_back(std::move(camera));
         return static_cast<int>(loader_.scene.cameras.size()) - 1;
     }
 
-    int add_light(size_t index, const Node& node, const glm::mat4& world) {
+    /// By the file's numbers, and those that no node shows.
+    void sort_cameras() {
+        Scene& scene = loader_.scene;
+        std::vector<size_t> order(scene.cameras.size());
+        std::iota(order.begin(), order.end(), size_t(0));
+        std::stable_sort(order.begin(), order.end(),
+                         [&](size_t a, size_t b) { return scene.cameras[a].number < scene.cameras[b].number; });
+        std::vector<Camera> sorted;
+        std::vector<int> places(order.size());
+        for (const size_t i : order) {
+            places[i] = static_cast<int>(sorted.size());
+            sorted.push_back(std::move(scene.cameras[i]));
+        }
+        scene.cameras = std::move(sorted);
+        for (Node& node : scene.nodes)
+            if (node.camera >= 0) node.camera = places[static_cast<size_t>(node.camera)];
+        std::vector<bool> is_placed(model_.cameras.size());
+        for (const Camera& camera : scene.cameras) is_placed[camera.number] = true;
+        for (size_t i = 0; i < is_placed.size(); ++i)
+            if (!is_placed[i]) scene.unplaced_cameras.push_back(camera_of(i));
+    }
+
+    int add_light(size_t index, const Node& node) {
         const tinygltf::Light& from = model_.lights[index];
         Light light;
         light.name = from.name.empty() ? node.name : from.name;
@@ -241,35 +289,11 @@ class NodeReader {
         else if (from.type != "directional")
             fail("{}: the light type \"{}\" is unknown", loader_.file.where("lights", index), printable(from.type, 20));
         light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
-        const Pose pose(world);
-        light.position = pose.at;
-        light.direction = pose.ahead;
         if (from.range > 0) light.range = static_cast<float>(from.range);
         light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
         light.outer_cone = static_cast<float>(from.spot.outerConeAngle);
         loader_.scene.lights.push_back(std::move(light));
         return static_cast<int>(loader_.scene.lights.size()) - 1;
-    }
-
-    // A glTF camera has no target; ours looks at the point of its axis that is nearest to the middle of the scene.
-    void aim_cameras() {
-        glm::vec3 lower{INFINITY}, upper{-INFINITY};
-        for (size_t i = 0; i < worlds_.size(); ++i) {
-            if (loader_.scene.nodes[i].mesh < 0) continue;
-            for (const Primitive& primitive :
-                 loader_.scene.meshes[static_cast<size_t>(loader_.scene.nodes[i].mesh)].primitives)
-                for (const glm::vec3& p : primitive.positions) {
-                    const glm::vec3 at = glm::vec3(worlds_[i] * glm::vec4(p, 1));
-                    lower = glm::min(lower, at);
-                    upper = glm::max(upper, at);
-                }
-        }
-        const glm::vec3 middle = 0.5f * lower + 0.5f * upper;
-        for (Camera& camera : loader_.scene.cameras) {
-            const glm::vec3 forward = camera.look - camera.eye;
-            const float distance = glm::dot(middle - camera.eye, forward);
-            if (std::isfinite(distance) && distance > 1e-3f) camera.look = camera.eye + forward * distance;
-        }
     }
 
     GltfLoader& loader_;

@@ -3,7 +3,9 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/setting.h"
@@ -26,6 +28,9 @@ Scene load_file(const std::filesystem::path& path, const LoadOptions& options) {
     if (extension == ".ply") return load_ply(path);
     if (extension == ".stl") return load_stl(path);
     if (extension == ".off") return load_off(path);
+    std::error_code unknown;
+    if (std::filesystem::is_directory(path, unknown))
+        fail("{}: not a regular file but a folder; name a scene in it", printable(path.string(), 1000));
     fail("{}: the extension \"{}\" is unknown; supported are .gltf, .glb, .obj, .ply, .stl, .off and builtin:NAME",
          printable(path.string(), 1000), printable(extension, 20));
 }

@@ -134,7 +134,7 @@ void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
     out.base_color = from.diffuse.value_or(out.base_color_texture >= 0 ? glm::vec3(1) : default_color);
     const glm::vec3 specular = from.specular.value_or(glm::vec3(0));
     if (largest_channel(out.base_color) > 1 || largest_channel(specular) > 1)
-        ++tally["{} materials with colours above 1 cut to that"];
+        ++tally["{} material{|s} with colours above 1 cut to that"];
     out.base_color = glm::min(out.base_color, glm::vec3(1));
     const float shininess = std::clamp(from.shininess.value_or(0.f), 0.f, 1e5f);
     // Blinn's exponent n as GGX: alpha² = 2 / (n + 2), and alpha is the square of the roughness.
@@ -149,20 +149,20 @@ void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
     if (from.roughness) out.roughness = clamped(*from.roughness);
     if (const auto m = mean(from.metallic_map, false)) {
         out.metallic = clamped(from.metallic.value_or(1.f)) * m->x;
-        ++tally["{} metalness textures (map_Pm) replaced by their mean"];
+        ++tally["{} metalness texture{|s} (map_Pm) replaced by {its|their} mean"];
     }
     if (const auto m = mean(from.roughness_map, false)) {
         out.roughness = clamped(from.roughness.value_or(1.f)) * m->x;
-        ++tally["{} roughness textures (map_Pr) replaced by their mean"];
+        ++tally["{} roughness texture{|s} (map_Pr) replaced by {its|their} mean"];
     }
     out.emissive = from.emissive.value_or(glm::vec3(from.emissive_map ? 1.f : 0.f));
     if (from.emissive_map) {
         const auto m = mean(from.emissive_map, true);
-        if (m) ++tally["{} emissive textures (map_Ke) replaced by their mean"];
+        if (m) ++tally["{} emissive texture{|s} (map_Ke) replaced by {its|their} mean"];
         out.emissive *= m ? glm::vec3(*m) : glm::vec3(from.emissive ? 1.f : 0.f);
     }
-    if (from.illum == 0) ++tally["{} materials of constant colour (illum 0) lit as others"];
-    if (from.illum == 10) ++tally["{} materials that show shadows only (illum 10) drawn as others"];
+    if (from.illum == 0) ++tally["{} material{|s} of constant colour (illum 0) lit as others"];
+    if (from.illum == 10) ++tally["{} material{|s} that {shows|show} shadows only (illum 10) drawn as others"];
 }
 
 /// illum 4, 6, 7 and 9 are the glasses; 6 and 7 bend the ray (a body), 4 and 9 let it through straight (a sheet). What
@@ -172,17 +172,17 @@ void MtlConverter::read_transmission(const MtlMaterial& from, float opacity, Mat
     glm::vec3 filter = glm::min(from.filter.value_or(glm::vec3(1)), glm::vec3(1));
     if (opacity >= 1 && !is_glass) {
         const bool says_nothing = largest_channel(filter) == 0 || filter == glm::vec3(1);
-        if (!says_nothing) ++tally["{} transmission filters (Tf) of materials that are opaque ignored"];
+        if (!says_nothing) ++tally["{} transmission filter{|s} (Tf) of materials that are opaque ignored"];
         return;
     }
     if (largest_channel(filter) == 0) {
-        ++tally["{} black transmission filters (Tf) ignored"];
+        ++tally["{} black transmission filter{|s} (Tf) ignored"];
         filter = glm::vec3(1);
     }
     const glm::vec3 own = from.diffuse.value_or(out.base_color_texture >= 0 ? glm::vec3(1) : default_color);
     const float through = opacity < 1 ? 1 - opacity : 1;
     if (opacity >= 1 && from.diffuse && largest_channel(own) > 0)
-        ++tally["{} glasses (illum 4, 6, 7 or 9 without d) whose colour Kd is ignored; Tf tints them"];
+        ++tally["{} glass{|es} (illum 4, 6, 7 or 9 without d) whose colour Kd is ignored; Tf tints {it|them}"];
     if (opacity <= 0 && !is_glass) transparent_.push_back(from.name);
     out.transmission = through;
     out.ior = from.ior.value_or(1.f) > 1 ? std::min(*from.ior, 10.f) : 1.5f;
@@ -203,11 +203,11 @@ void MtlConverter::read_color_map(const MtlMaterial& from, Material& out, UvTran
         out.base_color_texture = known->second;
     } else if (std::optional<Texture> texture = image(map)) {
         if (!from.dissolve_map && !is_opaque(*texture))
-            ++tally["{} colour textures whose alpha is ignored; name the image after map_d, too"];
+            ++tally["{} colour texture{|s} whose alpha is ignored; name the image after map_d, too"];
         out.base_color_texture = add_texture(key, std::move(*texture), map);
     }
     if (out.base_color_texture < 0) return;
-    if (map.channel) ++tally["{} texture options \"-imfchan\" of colours without effect"];
+    if (map.channel) ++tally["{} texture option{|s} \"-imfchan\" of colours without effect"];
     transform = {map.scale, map.offset};
 }
 
@@ -226,13 +226,13 @@ float MtlConverter::read_dissolve_map(const MtlMaterial& from, Material& out, Uv
     }
     if (holes == 0 || holes == opacity->texels.size()) {
         const auto mean = static_cast<float>(sum / static_cast<double>(opacity->texels.size()));
-        if (mean < 1) ++tally["{} dissolve textures (map_d) replaced by their mean"];
+        if (mean < 1) ++tally["{} dissolve texture{|s} (map_d) replaced by {its|their} mean"];
         return mean;
     }
-    ++tally["{} dissolve textures (map_d) cut holes where they are below one half"];
+    ++tally["{} dissolve texture{|s} (map_d) {cuts|cut} holes where {it is|they are} below one half"];
     const bool is_textured = out.base_color_texture >= 0;
     if (is_textured && (transform.scale != map.scale || transform.offset != map.offset))
-        ++tally["{} texture options \"-s\" and \"-o\" of map_d that differ from those of map_Kd ignored"];
+        ++tally["{} texture option{|s} \"-s\" and \"-o\" of map_d that {differs|differ} from those of map_Kd ignored"];
     if (!is_textured) transform = {map.scale, map.offset};
     const MtlTexture& shape = is_textured ? *from.diffuse_map : map;
     const std::string key =
@@ -256,7 +256,7 @@ void MtlConverter::add(const MtlMaterial& from) {
     read_surface(from, out);
     const float opacity = clamped(from.dissolve.value_or(1 - from.transparency.value_or(0.f)));
     if (from.dissolve && from.transparency && std::abs(opacity - (1 - *from.transparency)) > 0.01f)
-        ++tally["{} materials whose d and Tr disagree: d counts"];
+        ++tally["{} material{|s} whose d and Tr disagree: d counts"];
     read_transmission(from, opacity * read_dissolve_map(from, out, transform), out);
     scene_.materials.push_back(std::move(out));
     uv_transforms_.push_back(transform);
@@ -269,9 +269,10 @@ void MtlConverter::write_notes() {
         scene_.notes.push_back(fmt::format("{} images are missing, the materials' factors are used: {}",
                                            missing_.size(), listed(missing_)));
     if (!transparent_.empty())
-        scene_.notes.push_back(fmt::format("{} materials are wholly transparent (d 0 or Tr 1): {}", transparent_.size(),
+        scene_.notes.push_back(fmt::format("{} wholly transparent (d 0 or Tr 1): {}",
+                                           counted("{} material{|s} {is|are}", transparent_.size()),
                                            listed(transparent_)));
-    for (const auto& [sentence, count] : tally) scene_.notes.push_back(fmt::format(fmt::runtime(sentence), count));
+    for (const auto& [sentence, count] : tally) scene_.notes.push_back(counted(sentence, count));
 }
 
 }  // namespace peelray

@@ -22,7 +22,7 @@ class MtlReader {
 
     std::vector<MtlMaterial> read() {
         if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
-            ++tally_["{} material library in UTF-16 ignored; save it in ASCII or UTF-8"];
+            ++tally_["{} material librar{y|ies} in UTF-16 ignored; save it in ASCII or UTF-8"];
             return {};
         }
         TextLines lines(text_);
@@ -33,9 +33,9 @@ class MtlReader {
             if (key == "newmtl") {
                 out_.emplace_back().name = trimmed(rest);
             } else if (out_.empty()) {
-                ++tally_[fmt::format("{{}} statements before the first newmtl of \"{}\" ignored", escaped(name_))];
+                ++tally_[fmt::format("{{}} statement{{|s}} before the first newmtl of \"{}\" ignored", escaped(name_))];
             } else if (!statement(key, trimmed(rest))) {
-                ++tally_[fmt::format("{{}} statement in line {} of \"{}\" ignored, its value cannot be read: {}",
+                ++tally_[fmt::format("{{}} statement{{|s}} in line {} of \"{}\" ignored, its value cannot be read: {}",
                                      lines.number(), escaped(name_), escaped(printable(trimmed(lines.line()), 60)))];
             }
         }
@@ -71,9 +71,9 @@ class MtlReader {
         if (lower == "map_pr") return map(rest, m.roughness_map);
         if (lower == "map_pm") return map(rest, m.metallic_map);
         if (std::find(bump_maps.begin(), bump_maps.end(), lower) != bump_maps.end())
-            ++tally_["{} normal and bump maps ignored"];
+            ++tally_["{} normal and bump map{|s} ignored"];
         else
-            ++tally_[fmt::format("{{}} \"{}\" statements of material libraries without effect",
+            ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect",
                                  escaped(printable(key, 20)))];
         return true;
     }
@@ -106,7 +106,7 @@ class MtlReader {
     bool dissolve(std::string_view rest, MtlMaterial& m) {
         std::string_view after = rest;
         if (take_word(after) == "-halo") {
-            ++tally_["{} dissolves that grow towards the rim (d -halo) taken as even"];
+            ++tally_["{} dissolve{|s} that {grows|grow} towards the rim (d -halo) taken as even"];
             rest = after;
         }
         return number(rest, m.dissolve);
@@ -215,7 +215,9 @@ class TextureOptions {
         }
     }
 
-    void ignore(std::string_view name) { ++tally_[fmt::format("{{}} texture options \"{}\" without effect", name)]; }
+    void ignore(std::string_view name) {
+        ++tally_[fmt::format("{{}} texture option{{|s}} \"{}\" without effect", name)];
+    }
 
     MtlTexture& out_;
     MtlTally& tally_;

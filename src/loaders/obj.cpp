@@ -1,5 +1,7 @@
 #include "loaders/obj.h"
 
+#include "scene/origin.h"
+
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -119,7 +121,7 @@ class MaterialNames {
     MaterialNames(const std::vector<MtlMaterial>& materials, MtlTally& tally) {
         for (size_t i = 0; i < materials.size(); ++i)
             if (!exact_.try_emplace(materials[i].name, i).second)
-                ++tally["{} materials whose name an earlier one has already: the first counts"];
+                ++tally["{} material{|s} whose name an earlier one has already: the first counts"];
         for (size_t i = 0; i < materials.size(); ++i)
             plain_.try_emplace(std::string(name_without_comment(materials[i].name)), i);
     }
@@ -164,8 +166,9 @@ std::vector<MtlConverter::UvTransform> add_materials(ObjFile& file, const std::f
     }
     for (PolygonMesh::Part& part : file.mesh.parts) part.material = numbers[part.material];
     if (!unknown.empty() && !libraries.is_any_missing())
-        scene.notes.push_back(fmt::format("{} materials that no library defines are grey, the first is \"{}\"",
-                                          unknown.size(), printable(unknown[0], 80)));
+        scene.notes.push_back(fmt::format("{} grey, the first is \"{}\"",
+                                          counted("{} material{|s} that no library defines {is|are}", unknown.size()),
+                                          printable(unknown[0], 80)));
     converter.write_notes();
     return converter.uv_transforms();
 }
@@ -181,10 +184,12 @@ Scene load_obj(const std::filesystem::path& path) {
         const Bytes bytes = read_file(path);
         if (bytes.empty()) fail("{}: the file is empty", scene.name);
         file = parse_obj(as_text(bytes), scene.name);
+        if (const auto middle = far_middle(file.mesh)) file = parse_obj(as_text(bytes), scene.name, *middle);
     }
     scene.notes = std::move(file.notes);
     const std::vector<MtlConverter::UvTransform> transforms = add_materials(file, path.parent_path(), scene);
     add_polygon_mesh(std::move(file.mesh), scene);
+    settle_origin(scene);
     for (Mesh& mesh : scene.meshes)
         for (Primitive& primitive : mesh.primitives) {
             const auto& [scale, offset] = transforms[primitive.material];

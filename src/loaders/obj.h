@@ -20,10 +20,10 @@ struct ObjFile {
     std::vector<std::string> notes;      ///< what has no effect, with counts and lines
 };
 
-/// Reads the text of an OBJ file; `name` is the file's, for messages. Throws Error, with the line, for a statement that
-/// makes no sense: a vertex without three numbers, a corner that names no vertex, a referenced position that is not
-/// finite; also for a file without faces.
-ObjFile parse_obj(std::string_view text, const std::string& name);
+/// Reads the text of an OBJ file; `name` is the file's, for messages; positions are relative to `origin`. Throws Error,
+/// with the line, for a statement that makes no sense: a vertex without three numbers, a corner that names no vertex, a
+/// referenced position that is not finite; also for a file without faces.
+ObjFile parse_obj(std::string_view text, const std::string& name, const glm::dvec3& origin = glm::dvec3(0));
 
 /// Reads the file, its material libraries and their textures, all in its folder. The triangles come in file order; a
 /// polygon gives its triangles in place. `o` and `g` statements start objects, which come in the order of their first

@@ -37,7 +37,9 @@ struct Occurrences {
 
 class ObjReader {
   public:
-    ObjReader(std::string_view text, const std::string& name) : text_(text), name_(name), lines_(text) {
+    ObjReader(std::string_view text, const std::string& name, const glm::dvec3& origin)
+        : text_(text), name_(name), lines_(text) {
+        out_.mesh.origin = origin;
         out_.materials.emplace_back();
         // 30 bytes are a usual vertex or triangle; what is too much is given back in the end.
         out_.mesh.positions.reserve(std::min<size_t>(text.size() / 90, 1u << 28));
@@ -125,6 +127,7 @@ class ObjReader {
 
     void vertex(std::string_view rest) {
         std::array<float, 8> n;
+        const std::string_view text = rest;
         const size_t count = numbers(rest, n, vertex_name);
         std::vector<glm::vec3>& positions = out_.mesh.positions;
         if (positions.size() == no_value - 1) broken("more than {} vertices; split the scene", no_value - 1);
@@ -140,9 +143,18 @@ class ObjReader {
             position /= n[3];
             this->count(weighted_);
         }
+        if (out_.mesh.origin != glm::dvec3(0)) position = far_position(text, count == 4 ? n[3] : 1);
         positions.push_back(position);
         if (count == 5 || count == 8) this->count(surplus_);
         if (count == 6 || count == 7) color({n[3], n[4], n[5], count == 7 ? n[6] : 1});
+    }
+
+    /// A vertex whose floats would be too coarse: its first three numbers once more.
+    glm::vec3 far_position(std::string_view text, float weight) const {
+        glm::dvec3 p;
+        for (int k = 0; k < 3; ++k)
+            p[k] = to_number(take_word(text)).value_or(std::numeric_limits<double>::quiet_NaN());
+        return out_.mesh.relative(p / double(weight));
     }
 
     void color(glm::vec4 color) {
@@ -379,39 +391,45 @@ class ObjReader {
             mesh.colors.values.push_back(encoded_color(c[0], c[1], c[2]));
         mesh.colors.values.resize(mesh.positions.size(), glm::vec4(1));
         if (polypaint_.size() != mesh.positions.size())
-            out_.notes.push_back(fmt::format("{} colours (#MRGB) for {} vertices; the others are white",
-                                             polypaint_.size(), mesh.positions.size()));
+            out_.notes.push_back(fmt::format("{} for {}; the others are white",
+                                             counted("{} colour{|s} (#MRGB)", polypaint_.size()),
+                                             counted("{} vert{ex|ices}", mesh.positions.size())));
     }
 
     void note(const Occurrences& met, std::string_view what) {
-        if (met.count) out_.notes.push_back(fmt::format("{} {}, the first in line {}", met.count, what, met.line));
+        if (met.count)
+            out_.notes.push_back(fmt::format("{}, {}in line {}", counted(what, met.count),
+                                             met.count == 1 ? "" : "the first ", met.line));
     }
 
     void write_notes() {
-        note(points_met_, "point statements dropped");
-        note(lines_met_, "line statements dropped");
-        note(free_form_met_, "statements of free-form curves and surfaces dropped");
-        note(empty_faces_, "faces without corners dropped");
-        note(weighted_, "vertices divided by their weight (w)");
-        note(surplus_, "vertices with numbers after the coordinates that are no colour; those are ignored");
-        note(bright_, "channels of vertex colours outside of 0 to 1 cut to that");
-        note(broken_polypaint_, "lines of colours (#MRGB) that are no groups of eight hexadecimal digits ignored");
-        note(volume_coordinates_, "texture coordinates whose third number is ignored");
+        note(points_met_, "{} point statement{|s} dropped");
+        note(lines_met_, "{} line statement{|s} dropped");
+        note(free_form_met_, "{} statement{|s} of free-form curves and surfaces dropped");
+        note(empty_faces_, "{} face{|s} without corners dropped");
+        note(weighted_, "{} vert{ex|ices} divided by {its|their} weight (w)");
+        note(surplus_, "{} vert{ex|ices} with numbers after the coordinates that are no colour; those are ignored");
+        note(bright_, "{} channel{|s} of vertex colours outside of 0 to 1 cut to that");
+        note(broken_polypaint_,
+             "{} line{|s} of colours (#MRGB) that {is|are} no groups of eight hexadecimal digits ignored");
+        note(volume_coordinates_, "{} texture coordinate{|s} whose third number is ignored");
         if (infinite_uvs_)
-            out_.notes.push_back(fmt::format("{} texture coordinates that are not finite count as 0", infinite_uvs_));
+            out_.notes.push_back(
+                counted("{} texture coordinate{|s} that {is|are} not finite {counts|count} as 0", infinite_uvs_));
         if (out_.mesh.normals.values.empty()) {
-            note(smoothing_, "smoothing groups ignored: without normals, edges up to 75 degrees are smooth");
-            note(flat_, "\"s off\" ignored: without normals, edges up to 75 degrees are smooth");
+            note(smoothing_, "{} smoothing group{|s} ignored: without normals, edges up to 75 degrees are smooth");
+            note(flat_, "{} \"s off\" ignored: without normals, edges up to 75 degrees are smooth");
         }
-        for (const auto& [key, met] : without_effect_) note(met, fmt::format("\"{}\" statements without effect", key));
+        for (const auto& [key, met] : without_effect_)
+            note(met, fmt::format("{{}} \"{}\" statement{{|s}} without effect", key));
         if (unknown_.empty()) return;
         Occurrences all;
         for (const auto& [key, met] : unknown_) {
             all.line = all.count ? std::min(all.line, met.line) : met.line;
             all.count += met.count;
         }
-        note(all,
-             fmt::format("lines that begin with no OBJ keyword (such as \"{}\") ignored", unknown_.begin()->first));
+        note(all, fmt::format("{{}} line{{|s}} that {{begins|begin}} with no OBJ keyword (such as \"{}\") ignored",
+                              unknown_.begin()->first));
     }
 
     const std::string_view text_;
@@ -434,8 +452,8 @@ class ObjReader {
 
 }  // namespace
 
-ObjFile parse_obj(std::string_view text, const std::string& name) {
-    return ObjReader(text, name).read();
+ObjFile parse_obj(std::string_view text, const std::string& name, const glm::dvec3& origin) {
+    return ObjReader(text, name, origin).read();
 }
 
 }  // namespace peelray

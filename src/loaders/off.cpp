@@ -74,9 +74,9 @@ class OffColors {
             colors_[i] = linear(colors_[i], kinds_[i], bytes, unknown);
         }
         if (unknown > 0)
-            notes.push_back(fmt::format("{} colours grey, whose index is not in the colour map (0 to 147)", unknown));
+            notes.push_back(counted("{} colour{|s} grey, whose index is not in the colour map (0 to 147)", unknown));
         if (small > 0)
-            notes.push_back(fmt::format("{} colours of whole numbers up to 1 taken for parts of 1, not of 255", small));
+            notes.push_back(counted("{} colour{|s} of whole numbers up to 1 taken for parts of 1, not of 255", small));
         return std::move(colors_);
     }
 
@@ -117,7 +117,9 @@ class OffColors {
 
 class OffReader {
   public:
-    OffReader(FileReader& file, Scene& scene) : file_(file), scene_(scene) {}
+    OffReader(FileReader& file, Scene& scene, const glm::dvec3& origin) : file_(file), scene_(scene) {
+        mesh_.origin = origin;
+    }
 
     PolygonMesh read() {
         file_.allow_comments();
@@ -129,7 +131,7 @@ class OffReader {
         for (; file_.part.index < faces_; ++file_.part.index) read_face();
         if (binary_ ? file_.left() > 0 : !file_.word().empty())
             scene_.notes.push_back(
-                binary_ ? fmt::format("{} bytes after the last face have no effect", file_.left())
+                binary_ ? counted("{} byte{|s} after the last face {has|have} no effect", file_.left())
                         : fmt::format("what follows the last face in line {} has no effect", file_.line()));
         take_colors();
         return std::move(mesh_);
@@ -241,7 +243,7 @@ class OffReader {
     void read_vertex() {
         glm::dvec4 p(0, 0, 0, 1);
         for (int k = 0; k < (homogeneous_ ? 4 : 3); ++k) p[k] = number();
-        mesh_.positions.emplace_back(p / p.w);
+        mesh_.positions.push_back(mesh_.relative(glm::dvec3(p / p.w)));
         if (normals_) {
             glm::vec3 normal;
             for (int k = 0; k < 3; ++k) normal[k] = static_cast<float>(number());
@@ -327,7 +329,8 @@ class OffReader {
         if (of_vertices && of_faces)
             scene_.notes.push_back("the colours of faces have no effect beside those of vertices");
         if (odd_colors_ > 0)
-            scene_.notes.push_back(fmt::format("{} colours ignored, which do not have 1, 3 or 4 numbers", odd_colors_));
+            scene_.notes.push_back(
+                counted("{} colour{|s} ignored, which {does|do} not have 1, 3 or 4 numbers", odd_colors_));
         Material material;
         if (!of_vertices && !of_faces) material.base_color = glm::vec3(0.6f);
         scene_.materials.push_back(material);
@@ -351,17 +354,10 @@ class OffReader {
 }  // namespace
 
 Scene load_off(const std::filesystem::path& path) {
-    Scene scene;
-    scene.name = printable(path.filename().string());
-    scene.files = {path};
-    PolygonMesh mesh;
-    {
-        FileReader file(path, scene.name);
+    return load_polygons(path, [](FileReader& file, Scene& scene, const glm::dvec3& origin) {
         file.find_line_ends();
-        mesh = OffReader(file, scene).read();
-    }
-    add_polygon_mesh(std::move(mesh), scene);
-    return scene;
+        return OffReader(file, scene, origin).read();
+    });
 }
 
 }  // namespace peelray

@@ -134,7 +134,7 @@ struct PlyPlan {
 
 using Slots = std::array<double, role_count>;
 
-glm::vec3 slot_vector(const Slots& slots, PlyRole first) {
+glm::dvec3 slot_vector(const Slots& slots, PlyRole first) {
     const auto i = static_cast<size_t>(first);
     return {slots[i], slots[i + 1], slots[i + 2]};
 }
@@ -168,8 +168,9 @@ glm::vec4 slot_color(const Slots& slots, const PlyPlan& plan) {
 /// Reads the body into a polygon mesh.
 class PlyReader {
   public:
-    PlyReader(FileReader& file, const PlyHeader& header, Scene& scene)
+    PlyReader(FileReader& file, const PlyHeader& header, Scene& scene, const glm::dvec3& origin)
         : file_(file), header_(header), body_(file, header.format), scene_(scene) {
+        mesh_.origin = origin;
         for (const PlyElement& element : header.elements) plans_.emplace_back(element);
         check_elements();
     }
@@ -296,8 +297,8 @@ class PlyReader {
     }
 
     void add_vertex(const PlyPlan& plan, const Slots& slots) {
-        mesh_.positions.push_back(slot_vector(slots, PlyRole::x));
-        if (plan.knows(PlyRole::nx)) mesh_.normals.values.push_back(slot_vector(slots, PlyRole::nx));
+        mesh_.positions.push_back(mesh_.relative(slot_vector(slots, PlyRole::x)));
+        if (plan.knows(PlyRole::nx)) mesh_.normals.values.emplace_back(slot_vector(slots, PlyRole::nx));
         if (plan.knows(PlyRole::u) && !texcoords_)
             mesh_.uvs.values.emplace_back(slots[static_cast<size_t>(PlyRole::u)],
                                           slots[static_cast<size_t>(PlyRole::v)]);
@@ -390,8 +391,8 @@ class PlyReader {
             return;
         }
         if (mesh_.uvs.values.empty()) {
-            note(fmt::format("{} textures have no effect: the file has no texture coordinates",
-                             header_.textures.size()));
+            note(counted("{} texture{|s} {has|have} no effect: the file has no texture coordinates",
+                         header_.textures.size()));
             mesh_.parts.clear();
             return;
         }
@@ -400,10 +401,11 @@ class PlyReader {
         } else {
             scene_.materials = {textured(header_.textures[0])};
             if (header_.textures.size() > 1)
-                note(fmt::format("{} textures have no effect: no face has a texnumber", header_.textures.size() - 1));
+                note(counted("{} texture{|s} {has|have} no effect: no face has a texnumber",
+                             header_.textures.size() - 1));
         }
         if (unknown_textures_)
-            note(fmt::format("{} faces name a texture that the file does not have", unknown_textures_));
+            note(counted("{} face{|s} {names|name} a texture that the file does not have", unknown_textures_));
     }
 
     Material textured(const std::string& name) {
@@ -430,13 +432,13 @@ class PlyReader {
     void note_rest() {
         if (body_.is_ascii() ? !file_.word().empty() : file_.left() > 0)
             note(body_.is_ascii() ? fmt::format("what follows the last element in line {} has no effect", file_.line())
-                                  : fmt::format("{} bytes after the last element have no effect", file_.left()));
+                                  : counted("{} byte{|s} after the last element {has|have} no effect", file_.left()));
         if (unfit_texcoords_)
-            note(fmt::format("{} lists of texture coordinates ignored, which do not have two per corner",
-                             unfit_texcoords_));
+            note(counted("{} list{|s} of texture coordinates ignored, which {does|do} not have two per corner",
+                         unfit_texcoords_));
         if (unfit_colors_)
-            note(fmt::format("{} lists of colours ignored, which do not have three or four numbers per corner",
-                             unfit_colors_));
+            note(counted("{} list{|s} of colours ignored, which {does|do} not have three or four numbers per corner",
+                         unfit_colors_));
         std::vector<std::string> unused;
         for (const PlyPlan& plan : plans_) {
             if (!plan.is_vertex && !plan.is_face && !plan.is_strip)
@@ -476,17 +478,10 @@ class PlyReader {
 }  // namespace
 
 Scene load_ply(const std::filesystem::path& path) {
-    Scene scene;
-    scene.name = printable(path.filename().string());
-    scene.files = {path};
-    PolygonMesh mesh;
-    {
-        FileReader file(path, scene.name);
+    return load_polygons(path, [](FileReader& file, Scene& scene, const glm::dvec3& origin) {
         const PlyHeader header = read_ply_header(file);
-        mesh = PlyReader(file, header, scene).read();
-    }
-    add_polygon_mesh(std::move(mesh), scene);
-    return scene;
+        return PlyReader(file, header, scene, origin).read();
+    });
 }
 
 }  // namespace peelray

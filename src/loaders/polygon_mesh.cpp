@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "loaders/triangulate.h"
 #include "scene/encoding.h"
 #include "scene/normals.h"
+#include "scene/origin.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -268,15 +270,16 @@ class Converter {
 
 void add_notes(const Counts& counts, std::vector<std::string>& notes) {
     const auto note = [&](uint64_t count, const char* text) {
-        if (count > 0) notes.push_back(fmt::format("{} {}", count, text));
+        if (count > 0) notes.push_back(counted(text, count));
     };
-    note(counts.too_few_corners, "polygons with fewer than three corners dropped");
-    note(counts.too_many_corners, "polygons with too many corners and dents cut as fans, which may overlap");
-    note(counts.unused_vertices, "vertices that no polygon uses dropped");
-    note(counts.bad_normals, "normals without direction replaced");
-    note(counts.bad_uvs, "texture coordinates that are not finite replaced by 0");
-    note(counts.bad_colors, "vertex colours outside of 0 to 1 limited to it");
-    note(counts.clear_colors, "vertex colours with an alpha below 1 drawn opaque");
+    note(counts.too_few_corners, "{} polygon{|s} with fewer than three corners dropped");
+    note(counts.too_many_corners,
+         "{} polygon{|s} with too many corners and dents cut as {a fan|fans}, which may overlap");
+    note(counts.unused_vertices, "{} vert{ex|ices} that no polygon uses dropped");
+    note(counts.bad_normals, "{} normal{|s} without direction replaced");
+    note(counts.bad_uvs, "{} texture coordinate{|s} that {is|are} not finite replaced by 0");
+    note(counts.bad_colors, "{} vertex colour{|s} outside of 0 to 1 limited to it");
+    note(counts.clear_colors, "{} vertex colour{|s} with an alpha below 1 drawn opaque");
 }
 
 }  // namespace
@@ -298,6 +301,41 @@ glm::vec4 encoded_color(uint8_t red, uint8_t green, uint8_t blue, uint8_t alpha)
     return {linear[red], linear[green], linear[blue], alpha / 255.f};
 }
 
+std::optional<glm::dvec3> far_middle(const PolygonMesh& mesh) {
+    glm::vec3 lower(INFINITY), upper(-INFINITY);
+    for (const uint32_t corner : mesh.corners) {
+        if (corner >= mesh.positions.size()) continue;  // refused when it is converted
+        const glm::vec3& p = mesh.positions[corner];
+        if (!std::isfinite(p.x + p.y + p.z)) continue;
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+    }
+    if (!(lower.x <= upper.x)) return std::nullopt;
+    const glm::dvec3 middle = 0.5 * glm::dvec3(lower) + 0.5 * glm::dvec3(upper);
+    const bool far = is_far(reach_of(middle), reach_of(glm::dvec3(upper) - glm::dvec3(lower)));
+    return far ? std::optional(middle) : std::nullopt;
+}
+
+Scene load_polygons(const std::filesystem::path& path,
+                    const std::function<PolygonMesh(FileReader&, Scene&, const glm::dvec3&)>& read) {
+    const auto load = [&](Scene& scene, const glm::dvec3& origin) {
+        scene.name = printable(path.filename().string());
+        scene.files = {path};
+        FileReader file(path, scene.name);
+        return read(file, scene, origin);
+    };
+    Scene scene;
+    PolygonMesh mesh = load(scene, glm::dvec3(0));
+    if (const auto middle = far_middle(mesh)) {
+        mesh = {};
+        scene = {};
+        mesh = load(scene, *middle);
+    }
+    add_polygon_mesh(std::move(mesh), scene);
+    settle_origin(scene);
+    return scene;
+}
+
 void add_polygon_mesh(PolygonMesh mesh, Scene& scene) {
     if (mesh.corners.size() >= no_value || mesh.positions.size() >= no_value)
         fail("{}: more than 4,294,967,294 vertices or corners of polygons; split the mesh", scene.name);
@@ -316,6 +354,7 @@ void add_polygon_mesh(PolygonMesh mesh, Scene& scene) {
         meshes[i].name = mesh.objects[i];
         Node node;
         node.name = mesh.objects[i];
+        node.local[3] = glm::dvec4(mesh.origin, 1);
         node.mesh = static_cast<int>(scene.meshes.size());
         scene.nodes.push_back(std::move(node));
         scene.meshes.push_back(std::move(meshes[i]));

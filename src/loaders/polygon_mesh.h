@@ -3,10 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "loaders/file_reader.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -32,7 +36,8 @@ struct PolygonMesh {
         uint32_t material = 0;  ///< index into Scene::materials
     };
 
-    std::vector<glm::vec3> positions;
+    glm::dvec3 origin{0};              ///< what positions are relative to, see far_middle()
+    std::vector<glm::vec3> positions;  ///< see relative()
     std::vector<uint32_t> corners;     ///< polygon after polygon: indices into positions
     std::vector<uint32_t> ends;        ///< per polygon: where its corners end; empty: all polygons are triangles
     MeshAttribute<glm::vec3> normals;  ///< of any length; without direction: as if it had none
@@ -42,6 +47,8 @@ struct PolygonMesh {
     std::vector<Part> parts;           ///< ascending; empty: one part of object 0 and material 0
 
     uint32_t polygon_count() const;
+    /// A position as the file has it, as one of `positions`.
+    glm::vec3 relative(const glm::dvec3& position) const { return glm::vec3(position - origin); }
 };
 
 /// An integer colour of a file, scaled to [0, 1], as a linear one. Integer colours (8 or 16 bits a channel) are sRGB,
@@ -50,6 +57,16 @@ glm::vec4 encoded_color(const glm::vec4& encoded);
 
 /// An 8-bit colour.
 glm::vec4 encoded_color(uint8_t red, uint8_t green, uint8_t blue, uint8_t alpha = 255);
+
+/// The middle of what polygons show, if it is so far away that floats would lose details: to be read once more,
+/// relative to it. Nothing: it is not.
+std::optional<glm::dvec3> far_middle(const PolygonMesh& mesh);
+
+/// Reads a file of polygons: `read` what it says, with positions relative to an origin, and adds it to the scene, which
+/// has its name and nothing else yet. Where the polygons turn out to be far away, reads it once more, so that positions
+/// become floats only when they are near.
+Scene load_polygons(const std::filesystem::path& path,
+                    const std::function<PolygonMesh(FileReader& file, Scene& scene, const glm::dvec3& origin)>& read);
 
 /// Adds a node and a mesh for each object and, in it, a primitive for each part, and notes of what could not be kept.
 /// Triangles come in the order of the polygons, a polygon's in place. Vertices are split where attributes of corners or

@@ -72,7 +72,10 @@ size_t find_facet(std::string_view line) {
 /// The facets of a text.
 class AsciiStl {
   public:
-    AsciiStl(FileReader& file, Scene& scene) : file_(file), scene_(scene), shared_(mesh_.positions) {}
+    AsciiStl(FileReader& file, Scene& scene, const glm::dvec3& origin)
+        : file_(file), scene_(scene), shared_(mesh_.positions) {
+        mesh_.origin = origin;
+    }
 
     PolygonMesh read() {
         file_.part = {"a facet"};
@@ -86,9 +89,9 @@ class AsciiStl {
   private:
     void read_statement(std::string_view word) {
         if (same_word(word, "vertex")) {
-            glm::vec3 position;
-            for (int k = 0; k < 3; ++k) position[k] = static_cast<float>(file_.number());
-            mesh_.corners.push_back(shared_.add(position));
+            glm::dvec3 position;
+            for (int k = 0; k < 3; ++k) position[k] = file_.number();
+            mesh_.corners.push_back(shared_.add(mesh_.relative(position)));
             ++corners_;
         } else if (same_word(word, "facet")) {
             finish_facet();
@@ -210,8 +213,10 @@ glm::vec4 facet_color(uint16_t attribute, bool red_lowest) {
 /// The facets of a binary file.
 class BinaryStl {
   public:
-    BinaryStl(FileReader& file, Scene& scene)
-        : file_(file), scene_(scene), magics_(file.peek(header_size).substr(0, 80)), shared_(mesh_.positions) {}
+    BinaryStl(FileReader& file, Scene& scene, const glm::dvec3& origin)
+        : file_(file), scene_(scene), magics_(file.peek(header_size).substr(0, 80)), shared_(mesh_.positions) {
+        mesh_.origin = origin;
+    }
 
     PolygonMesh read() {
         const uint32_t count = read_count();
@@ -219,8 +224,9 @@ class BinaryStl {
         attributes_.reserve(count);
         for (uint32_t i = 0; i < count; ++i) read_facet(file_.take(facet_size));
         if (file_.left() > 0)
-            scene_.notes.push_back(
-                fmt::format("{} bytes after the last of {} facets have no effect", file_.left(), count));
+            scene_.notes.push_back(fmt::format("{} after the last of {} {} no effect",
+                                               counted("{} byte{|s}", file_.left()), counted("{} facet{|s}", count),
+                                               file_.left() == 1 ? "has" : "have"));
         add_colors();
         return std::move(mesh_);
     }
@@ -243,7 +249,7 @@ class BinaryStl {
         for (size_t k = 0; k < 3; ++k) {
             glm::vec3 position;
             std::memcpy(&position, bytes + 12 + k * 12, 12);
-            mesh_.corners.push_back(shared_.add(position));
+            mesh_.corners.push_back(shared_.add(mesh_.relative(position)));
         }
         uint16_t attribute = 0;
         std::memcpy(&attribute, bytes + 48, 2);
@@ -274,7 +280,7 @@ class BinaryStl {
             scene_.notes.push_back("the specular and ambient colours of the STL header have no effect");
         if (unknown > 0)
             scene_.notes.push_back(
-                fmt::format("{} facets have attributes that are no colours, without effect", unknown));
+                counted("{} facet{|s} {has|have} attributes that are no colours, without effect", unknown));
         scene_.materials.push_back(material);
     }
 
@@ -307,22 +313,13 @@ bool is_binary(FileReader& file) {
 }  // namespace
 
 Scene load_stl(const std::filesystem::path& path) {
-    Scene scene;
-    scene.name = printable(path.filename().string());
-    scene.files = {path};
-    PolygonMesh mesh;
-    {
-        FileReader file(path, scene.name);
+    return load_polygons(path, [](FileReader& file, Scene& scene, const glm::dvec3& origin) {
         file.find_line_ends();
-        if (is_binary(file)) {
-            mesh = BinaryStl(file, scene).read();
-        } else {
-            mesh = AsciiStl(file, scene).read();
-            scene.materials.emplace_back();
-        }
-    }
-    add_polygon_mesh(std::move(mesh), scene);
-    return scene;
+        if (is_binary(file)) return BinaryStl(file, scene, origin).read();
+        PolygonMesh mesh = AsciiStl(file, scene, origin).read();
+        scene.materials.emplace_back();
+        return mesh;
+    });
 }
 
 }  // namespace peelray

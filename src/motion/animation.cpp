@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "motion/animation.h"
 #include "motion/motion.h"
-#include "scene/transform.h"
 
 namespace peelray {
 namespace {
@@ -53,27 +52,6 @@ void apply(const AnimationChannel& channel, float time, Moment& moment, std::vec
         case Path::weights:
             moment.weights[size_t(channel.node)] = v;
             break;
-    }
-}
-
-/// Cameras and lights go where their nodes went.
-void carry_along(const Scene& scene, Moment& moment) {
-    for (size_t i = 0; i < scene.nodes.size(); i++) {
-        const Node& node = scene.nodes[i];
-        if (node.camera < 0 && node.light < 0) continue;
-        const Pose pose(moment.worlds[i]);
-        if (node.camera >= 0) {
-            const Camera& rest = scene.cameras[size_t(node.camera)];
-            Camera& camera = moment.cameras[size_t(node.camera)];
-            camera.eye = pose.at;
-            camera.look = pose.at + pose.ahead * glm::length(rest.look - rest.eye);
-            camera.up = pose.up;
-        }
-        if (node.light >= 0) {
-            Light& light = moment.lights[size_t(node.light)];
-            light.position = pose.at;
-            light.direction = pose.ahead;
-        }
     }
 }
 
@@ -173,10 +151,13 @@ Moment moment_of(const Scene& scene, const std::string& which, double time) {
         for (const AnimationChannel& channel : animation->channels) apply(channel, float(past), moment, placements);
     }
     for (size_t i = 0; i < scene.nodes.size(); i++)
-        if (!scene.nodes[i].fixed) moment.locals[i] = placements[i].matrix();
+        if (!scene.nodes[i].fixed) moment.locals[i] = placements[i].matrix(scene.precise);
     moment.worlds = world_matrices(scene, moment.locals);
     if (generates(scene, animations)) moment.generated_time = time;
-    carry_along(scene, moment);
+    // As far ahead as at rest.
+    carry_along(
+        scene, moment, moment.cameras, moment.lights,
+        [](const Camera& rest, const glm::dvec3&, const glm::dvec3&) { return glm::length(rest.look - rest.eye); });
     return moment;
 }
 

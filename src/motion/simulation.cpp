@@ -135,9 +135,9 @@ void Simulation::place(const Scene& scene, Moment& moment) {
         const double turns = moment.generated_time / double(swarm.period);
         for (uint32_t i = 0; i < swarm.nodes.size(); i++) {
             const SwarmPlace place = swarmPlace(i, float(turns - std::floor(turns)));
-            glm::mat4& local = moment.locals[size_t(swarm.nodes[i])];
-            local = glm::mat4(place.linear);
-            local[3] = glm::vec4(place.position, 1);
+            glm::dmat4& local = moment.locals[size_t(swarm.nodes[i])];
+            local = glm::dmat4(glm::mat4(place.linear));
+            local[3] = glm::dvec4(place.position, 1);
         }
     }
     moment.worlds = world_matrices(scene, moment.locals);

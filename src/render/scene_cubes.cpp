@@ -30,6 +30,12 @@ uint32_t in_sixteens(float voxels) {
     return uint32_t(std::clamp(std::ceil(voxels / 16) * 16, 16.0f, 2048.0f));
 }
 
+/// To three digits, so that what a message suggests is allowed.
+double rounded_down(double value) {
+    const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
+    return std::floor(value / digit) * digit;
+}
+
 std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed,
                                   const std::vector<float>& scales) {
     const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice, fixed);
@@ -48,8 +54,9 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
             fail(
                 "a tolerance of {} is more than {} voxels of a cube, which {} voxel cannot hold: choose at most {:.3g} "
                 "({}), a smaller {}, or {} two-level",
-                choice.tolerance, LDC_FARTHEST_BY_VOXEL, setting::traversal, LDC_FARTHEST_BY_VOXEL * voxel * scales[i],
-                setting::tolerance, setting::ldc, setting::traversal);
+                choice.tolerance, LDC_FARTHEST_BY_VOXEL, setting::traversal,
+                rounded_down(LDC_FARTHEST_BY_VOXEL * voxel * scales[i]), setting::tolerance, setting::ldc,
+                setting::traversal);
     }
     return bodies;
 }

@@ -102,7 +102,7 @@ Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
     camera.vertical_fov = glm::radians(40.f);
     if (!(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z)) return camera;
     const glm::vec3 half = 0.5f * upper - 0.5f * lower;
-    camera.look = lower + half;
+    const glm::vec3 look = lower + half;
     const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.45f, 1.f));
     const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back)), up = glm::cross(back, right);
     constexpr float margin = 1.05f;
@@ -115,10 +115,11 @@ Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
         distance = std::max(distance, glm::dot(p, back) + needed);
     }
     // A single point far from the origin needs a distance that its coordinates can still express.
-    const glm::vec3 magnitude = glm::abs(camera.look);
+    const glm::vec3 magnitude = glm::abs(look);
     distance = std::max(distance,
                         1e-3f * std::max({magnitude.x, magnitude.y, magnitude.z}) * (half == glm::vec3(0) ? 1.f : 0.f));
-    camera.eye = camera.look + back * distance;
+    camera.look = look;
+    camera.eye = look + back * distance;
     return camera;
 }
 

@@ -30,13 +30,13 @@ Camera turned(const Camera& camera, double turn) {
     if (turn == 0) return out;
     const double angle = 2 * 3.14159265358979323846 * turn, c = std::cos(angle), s = std::sin(angle);
     const auto rotate = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
-    out.eye = glm::vec3(glm::dvec3(camera.look) + rotate(glm::dvec3(camera.eye) - glm::dvec3(camera.look)));
+    out.eye = glm::vec3(camera.look + rotate(camera.eye - camera.look));
     out.up = glm::vec3(rotate(camera.up));
     return out;
 }
 
 View make_view(const Camera& camera, float aspect, const glm::vec3& lower, const glm::vec3& upper) {
-    const glm::dvec3 eye = camera.eye, look = glm::dvec3(camera.look) - eye;
+    const glm::dvec3 eye = camera.eye, look = camera.look - eye;
     const auto finite = [](const glm::dvec3& v) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };

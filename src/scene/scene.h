@@ -95,17 +95,21 @@ struct Skin {
 
 /// A node's transform in its parent, in parts: scaled, then rotated, then moved.
 struct Placement {
-    glm::vec3 translation{0};
-    glm::quat rotation{1, 0, 0, 0};
-    glm::vec3 scale{1};
-    glm::mat4 matrix() const;
+    glm::dvec3 translation{0};
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 scale{1};
+    /// Put together in single precision, unless the scene is `precise`.
+    glm::dmat4 matrix(bool precise = false) const;
 };
 
 struct Camera {
     std::string name;
-    glm::vec3 eye{0, 0, 1}, look{0}, up{0, 1, 0};
+    glm::dvec3 eye{0, 0, 1}, look{0};  ///< double: its direction is their difference, wherever it stands
+    glm::vec3 up{0, 1, 0};
     float vertical_fov = 0.8f;      ///< radians, (0, π); unused if orthographic
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
+    uint32_t number = 0;            ///< as the file counts its cameras; several nodes may show the same one
+    std::string node;               ///< name of the node that shows it; empty: it has none, or none shows it
 };
 
 struct Light {
@@ -121,8 +125,8 @@ struct Light {
 
 struct Node {
     std::string name;
-    int parent = -1;     ///< index into Scene::nodes; a parent always precedes its children
-    glm::mat4 local{1};  ///< node to parent
+    int parent = -1;      ///< index into Scene::nodes; a parent always precedes its children
+    glm::dmat4 local{1};  ///< node to parent
     int mesh = -1, camera = -1, light = -1, skin = -1;
     Placement rest;              ///< what animations start from; unused where `fixed`
     bool fixed = true;           ///< no animation can move it: the file gives a matrix, or the scene is no glTF file
@@ -163,12 +167,17 @@ struct Animation {
 struct Scene {
     std::string name;                          ///< "builtin:teapots" or the file's name
     std::vector<std::filesystem::path> files;  ///< all that were read, its own first, each once; built-in: none
+    /// Where positions count from: those of cameras, lights, boxes and triangles in the world are relative to it. 0
+    /// unless the scene stands far from the world's origin (docs/conventions.md). Matrices of nodes leave it out.
+    glm::dvec3 origin{0};
+    bool precise = false;  ///< something in it stands so far away that matrices are multiplied in double precision
     std::vector<Texture> textures;
     std::vector<Material> materials;  ///< never empty once triangles exist
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;      ///< parents first; only what the file's default scene shows
-    std::vector<Camera> cameras;  ///< in world space, in the order in which the file's nodes show them
-    std::vector<Light> lights;    ///< in world space
+    std::vector<Camera> cameras;  ///< in world space, by number; of equal ones in the order of the nodes that show them
+    std::vector<Camera> unplaced_cameras;  ///< by number; no node shows them, so that they have a lens but no place
+    std::vector<Light> lights;             ///< in world space
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     Generated generated;                              ///< what is computed for every moment, if anything is

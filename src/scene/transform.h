@@ -36,11 +36,20 @@ struct NormalTransform {
 };
 
 /// Where a camera or light of a node stands and looks: along its negative z axis, its y axis up.
-struct Pose {
-    glm::vec3 at, ahead, up;
+template <typename T>
+struct BasicPose {
+    using Vector = glm::vec<3, T>;
+    Vector at, ahead, up;
 
-    explicit Pose(const glm::mat4& world)
-        : at(world[3]), ahead(unit_or(-glm::vec3(world[2]), {0, 0, -1})), up(unit_or(glm::vec3(world[1]), {0, 1, 0})) {}
+    explicit BasicPose(const glm::mat<4, 4, T>& world)
+        : at(world[3]), ahead(unit(-Vector(world[2]), {0, 0, -1})), up(unit(Vector(world[1]), {0, 1, 0})) {}
+
+  private:
+    static Vector unit(const Vector& v, const Vector& otherwise) {
+        const T length = glm::length(v);
+        return length > 0 && std::isfinite(length) ? v / length : otherwise;
+    }
 };
+using Pose = BasicPose<float>;
 
 }  // namespace peelray

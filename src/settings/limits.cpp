@@ -8,11 +8,20 @@ void fail_limits(const Limits& limits, Setting setting, const std::string& value
     fail("{}: choose {} ({})", fmt::format(fmt::runtime(limits.fault), value), limits.choose, setting);
 }
 
-void check_limits(const Limits& limits, Setting setting, const glm::vec3& vector) {
+template <typename Vector>
+static void check_vector(const Limits& limits, Setting setting, const Vector& vector) {
     for (int i = 0; i < 3; i++)
         if (!std::isfinite(vector[i])) fail("{} must be three finite numbers", setting);
     for (int i = 0; i < 3; i++)
         if (!limits.allow(double(vector[i]))) fail_limits(limits, setting, print_text(vector));
+}
+
+void check_limits(const Limits& limits, Setting setting, const glm::vec3& vector) {
+    check_vector(limits, setting, vector);
+}
+
+void check_limits(const Limits& limits, Setting setting, const glm::dvec3& vector) {
+    check_vector(limits, setting, vector);
 }
 
 void check_limits(const Limits& limits, Setting setting, const glm::uvec2& size) {

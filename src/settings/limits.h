@@ -44,6 +44,7 @@ inline constexpr Limits kSampleLimits{
 [[noreturn]] void fail_limits(const Limits& limits, Setting setting, const std::string& value);
 /// Throws Error unless the vector is finite and its components are allowed.
 void check_limits(const Limits& limits, Setting setting, const glm::vec3& vector);
+void check_limits(const Limits& limits, Setting setting, const glm::dvec3& vector);
 void check_limits(const Limits& limits, Setting setting, const glm::uvec2& size);
 
 template <typename Number>

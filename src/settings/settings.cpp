@@ -128,10 +128,11 @@ void check(const TracingArguments& arguments) {
     if (a.batch != Batch::none && a.traversal == Traversal::voxel)
         fail("{} voxel takes one sample and one ray at a time: use {} {} with {} two-level or mipmap",
              setting::traversal, setting::batch, name_of(a.batch), setting::traversal);
-    if (a.depth == 16 && a.traversal == Traversal::voxel)
-        fail("{} voxel has a depth format of its own: use {} 16 with {} two-level or mipmap", setting::traversal,
-             setting::depth, setting::traversal);
     const bool by_samples = a.hit ? *a.hit != HitTest::exact : a.builder == BuilderKind::peel;
+    if (a.depth == 16 && a.traversal == Traversal::voxel)
+        fail("{} voxel has a depth format of its own: use {} 16 with {} two-level or mipmap{}", setting::traversal,
+             setting::depth, setting::traversal,
+             by_samples ? "" : fmt::format(", and with {} tolerance or planar", setting::hit));
     if (a.depth == 16 && !by_samples)
         fail("depths of 16 bits are too coarse for {} {}: use {} 16 with {} tolerance or planar", setting::hit,
              a.hit ? name_of(*a.hit) : "auto", setting::depth, setting::hit);

@@ -13,7 +13,8 @@ namespace peelray {
 
 /// Where the camera stands, and when.
 struct ViewArguments {
-    std::optional<glm::vec3> eye, look, up;
+    std::optional<glm::dvec3> eye, look;  ///< in the world
+    std::optional<glm::vec3> up;
     std::optional<float> fov;  ///< degrees
     std::string camera;
     std::optional<double> time;  ///< seconds
@@ -50,7 +51,8 @@ inline void add_view(SettingList& list, ViewArguments& a) {
         list, a.camera,
         {.name = "camera",
          .group = group,
-         .help = "a camera of the scene, see 'peelray info SCENE'; default: the first, or the whole scene in view",
+         .help = "a camera of the scene, by its name, its node's or its number in the file, see 'peelray info SCENE'; "
+                 "default: the first, or the whole scene in view",
          .form = "NAME|N"});
     add_setting(
         list, a.time,

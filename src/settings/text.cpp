@@ -37,6 +37,15 @@ std::optional<glm::vec3> parse_vector(std::string_view text) {
     return vector;
 }
 
+std::optional<glm::dvec3> parse_double_vector(std::string_view text) {
+    const std::optional<glm::vec3> rounded = parse_vector(text);
+    if (!rounded) return std::nullopt;
+    const std::vector<std::string> parts = split(text);
+    glm::dvec3 vector;
+    for (int i = 0; i < 3; i++) vector[i] = parse_number<double>(parts[size_t(i)]).value_or((*rounded)[i]);
+    return vector;
+}
+
 std::optional<std::pair<uint32_t, uint32_t>> parse_pair(std::string_view text, char separator) {
     const size_t at = text.find(separator);
     if (at == std::string_view::npos) return std::nullopt;
@@ -55,6 +64,10 @@ std::optional<Shard> parse_text(std::string_view text, Shard*) {
 }
 
 std::string print_text(const glm::vec3& v) {
+    return fmt::format("{},{},{}", v.x, v.y, v.z);
+}
+
+std::string print_text(const glm::dvec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 

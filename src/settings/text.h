@@ -34,8 +34,9 @@ std::vector<std::string> split(std::string_view list);
 std::optional<glm::uvec2> parse_size(std::string_view text);
 /// "8" or "8x4": the pixels of a block.
 std::optional<glm::uvec2> parse_block(std::string_view text);
-/// "1,2.5,-3"
+/// "1,2.5,-3"; no number is beyond the range of single precision.
 std::optional<glm::vec3> parse_vector(std::string_view text);
+std::optional<glm::dvec3> parse_double_vector(std::string_view text);
 /// Two numbers with `separator` in between.
 std::optional<std::pair<uint32_t, uint32_t>> parse_pair(std::string_view text, char separator);
 
@@ -63,6 +64,7 @@ std::optional<std::vector<Value>> parse_list(std::string_view text, Parse&& pars
 
 /// The first part of each: as it would be typed.
 std::string print_text(const glm::vec3& vector);
+std::string print_text(const glm::dvec3& vector);
 std::string print_text(const glm::uvec2& size);
 std::string print_text(const FrameRange& frames);
 std::string print_text(const Shard& shard);
@@ -106,6 +108,9 @@ inline std::optional<glm::uvec2> parse_text(std::string_view text, glm::uvec2*) 
 }
 inline std::optional<glm::vec3> parse_text(std::string_view text, glm::vec3*) {
     return parse_vector(text);
+}
+inline std::optional<glm::dvec3> parse_text(std::string_view text, glm::dvec3*) {
+    return parse_double_vector(text);
 }
 std::optional<FrameRange> parse_text(std::string_view text, FrameRange*);
 std::optional<Shard> parse_text(std::string_view text, Shard*);

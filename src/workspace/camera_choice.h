@@ -1,11 +1,18 @@
 // Which camera the settings choose.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "scene/box.h"
 #include "scene/scene.h"
 #include "settings/settings.h"
 
 namespace peelray {
+
+/// What chooses a camera by its number: "1", or, where several nodes show the same one, "1.0", "1.1", ... in their
+/// order ("1" is then the first).
+std::string camera_label(const std::vector<Camera>& cameras, size_t index);
 
 /// A camera of the scene, or one that sees all of `box`, with what the settings say of its place. `cameras`: those of
 /// the scene, where they are now. Throws Error for a camera that the scene does not have.

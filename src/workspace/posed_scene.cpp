@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/image.h"
 #include "loaders/load.h"
 #include "motion/animation.h"
@@ -22,9 +23,11 @@ std::string choose_animation(const PictureArguments& a, const Scene& scene, cons
     return "";
 }
 
-Environment choose_environment(const PictureArguments& a, const Scene& scene) {
+Environment choose_environment(const PictureArguments& a, const Scene& scene, const Notes& notes) {
     if (!a.env.empty()) {
-        const Image image = read_hdr(a.env);
+        std::string text;
+        const Image image = read_hdr(a.env, &text);
+        if (!text.empty()) note(notes, text);
         return image_environment(image.width, image.height, image.pixels);
     }
     if (a.background) return color_environment(*a.background);
@@ -52,7 +55,7 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     check_visible(geometry(), *scene_, time_.has_value(), notes);
     triangles_ = geometry().triangles.size();
     camera_ = choose_camera(settings_, *scene_, moment_.cameras, framed_);
-    environment_ = choose_environment(settings, *scene_);
+    environment_ = choose_environment(settings, *scene_, notes);
 }
 
 const Geometry& PosedScene::geometry() {
@@ -91,10 +94,14 @@ Assembly PosedScene::assembly_of_moment() const {
 void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment, const Notes& notes) {
     const size_t count = geometry.triangles.size();
     if (geometry.zero_area == count && !is_moment)
-        fail("{}: none of its {} triangles has an area; give a file with a surface", scene.name, count);
+        fail("{}: {} area; give a file with a surface", scene.name,
+             counted(count == 1 ? "its only triangle has no" : "none of its {} triangles has an", count));
     for (const std::string& text : scene.notes) note(notes, text);
     if (geometry.zero_area > 0)
-        note(notes, fmt::format("{} of {} triangles have no area: they can never be hit", geometry.zero_area, count));
+        note(notes,
+             fmt::format("{} of {} no area: {} can never be hit", geometry.zero_area,
+                         counted(geometry.zero_area == 1 ? "{} triangle{|s} has" : "{} triangle{|s} have", count),
+                         geometry.zero_area == 1 ? "it" : "they"));
     for (const std::string& extension : scene.extensions_unsupported)
         note(notes, fmt::format("the extension {} has no effect in this version", extension));
 }

@@ -31,6 +31,7 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     stats.height = made.picture.height;
     stats.triangles = scene.triangles();
     stats.box = scene.bounds();
+    stats.origin = scene.scene().origin;
     stats.rays = made.picture.rays;
     RenderStats& times = stats.render;
     times.tracer = Tracer::reference;

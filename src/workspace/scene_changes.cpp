@@ -53,6 +53,7 @@ Box add_floor(Scene& scene, const Box& box) {
     scene.materials.push_back(material);
     Node node;
     node.name = "floor";
+    node.local[3] = glm::dvec4(scene.origin, 1);
     node.mesh = int(scene.meshes.size());
     scene.meshes.push_back({"floor", {primitive}, {}});
     scene.nodes.push_back(node);

@@ -23,7 +23,8 @@ struct PictureStats {
     Machine machine;
     uint32_t width = 0, height = 0;
     uint64_t triangles = 0;  ///< of the scene, with all instances
-    Box box;                 ///< of the scene
+    Box box;                 ///< of the scene, relative to `origin`
+    glm::dvec3 origin{0};    ///< Scene::origin
     RayCounts rays;
     RenderStats render;           ///< of Tracer::reference only times and passes
     RayCosts largest_of_a_pixel;  ///< where costs were counted
@@ -46,7 +47,8 @@ struct TraceStats {
     SceneCubes::Stats cubes;
     std::vector<LdcBody> bodies;  ///< with the grids of their cubes
     std::vector<uint32_t> shown;  ///< how many instances show each of them
-    Box box;                      ///< of the scene
+    Box box;                      ///< of the scene, relative to `origin`
+    glm::dvec3 origin{0};         ///< Scene::origin
     std::vector<Allocation> memory, peak_memory;
 };
 

@@ -53,16 +53,12 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         check_interrupt();
         if (progress) progress(share);
     };
-    if (settings.tracer == Tracer::reference) {
-        MadePicture made = reference_picture(scene_, settings, report);
-        note_culled(settings, made.picture);
-        return made;
-    }
     if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_ambient_, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
-    MadePicture made = render_on_device(settings, report);
+    MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, report)
+                                                            : render_on_device(settings, report);
     note_culled(settings, made.picture);
-    return made;
+    return in_world(std::move(made));
 }
 
 /// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at
@@ -74,6 +70,17 @@ void Workspace::note_culled(const PictureSettings& settings, const Picture& pict
     if (text.empty()) return;
     noted_culled_ = true;
     note(notes_, text);
+}
+
+/// The picture with positions in the world.
+MadePicture Workspace::in_world(MadePicture made) const {
+    const glm::dvec3& origin = scene_.scene().origin;
+    if (origin == glm::dvec3(0)) return made;
+    // w: 1 where there is a surface.
+    for (std::vector<glm::vec4>* points : {&made.picture.aovs.position, &made.picture.aovs.box})
+        for (glm::vec4& point : *points)
+            if (point.w > 0) point = glm::vec4(glm::vec3(glm::dvec3(point) + origin), point.w);
+    return made;
 }
 
 /// The renderer for pictures like this one. It stays from moment to moment; another tracer or hit test gets another,
@@ -105,6 +112,7 @@ MadePicture Workspace::render_on_device(const RenderSettings& settings, const Pr
     stats.height = result.height;
     stats.triangles = scene_.triangles();
     stats.box = scene_.bounds();
+    stats.origin = scene_.scene().origin;
     stats.rays = result.rays;
     stats.render = std::move(result.stats);
     for (const RayCostField& field : kRayCostFields)

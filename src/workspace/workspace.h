@@ -62,6 +62,7 @@ class Workspace {
   private:
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
+    MadePicture in_world(MadePicture made) const;
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 

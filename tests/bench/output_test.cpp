@@ -81,7 +81,7 @@ TEST_F(BenchOutputTest, AnInterruptKeepsWhatWasMeasured) {
     EXPECT_EQ(json()["rows"].size(), 1u);
     arguments_.output.clear();
     BenchOutput without(arguments_, {});
-    EXPECT_EQ(line_of(without, [&] { measure(without); }), "interrupted after 1 rows");
+    EXPECT_EQ(line_of(without, [&] { measure(without); }), "interrupted after 1 row");
 }
 
 TEST_F(BenchOutputTest, WhereNothingWasMeasuredTheFirstReasonIsSaid) {

@@ -181,18 +181,29 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
     const auto to = [&](const std::string& path) {
         return run({"render", in("cube.obj"), "-o", path, "--size", "64x48"});
     };
-    expect_refused(to(out("gone/a.png")), 1, "there is no folder");
+    expect_refused(to(in("file/deep/a.png")), 1, "is not a folder");
+    std::filesystem::create_symlink(folder / "nowhere", folder / "broken");
+    expect_refused(to(in("broken/a.png")), 1, "broken is not a folder");
     expect_refused(to(in("folder.png")), 1, "it is a folder");
     expect_refused(to(in("file/a.png")), 1, "is not a folder");
     expect_refused(to("/proc/a.png"), 1, "cannot write");
     expect_refused(to(out("a.jpg")), 1, "name it .png, .exr or .hdr");
     expect_refused(to(out("a")), 1, "name it .png, .exr or .hdr");
     expect_refused(to(""), 1, "name it .png, .exr or .hdr");
-    expect_refused(render(in("cube.obj"), {"--stats", out("gone/a.json")}), 1, "there is no folder");
+    expect_refused(to("/proc/new/a.png"), 1, "cannot write");
+    expect_refused(render(in("cube.obj"), {"--stats", in("file/a.json")}), 1, "is not a folder");
+    expect_refused(render(in("cube.obj"), {"--stats", out("a.png/a.json")}), 1, "would be a file and the folder of");
     put("rays.npy", rays_npy({0, 0, 5, 0, 0, 0, -1, 9}));
-    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("gone/h.npy")}), 1,
-                   "there is no folder");
+    expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", in("file/h.npy")}), 1,
+                   "is not a folder");
     expect_refused(run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", in("rays.npy")}), 1, "is an input");
+}
+
+TEST_F(BadInput, NoFolderIsMadeForWhatFails) {
+    put("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(render(in("nan.obj"), {}, "new/deep/a.png").status, 1);
+    EXPECT_EQ(render("builtin:blob:8", {"--device", "99", "--stats", out("stats/a.json")}, "new/a.png").status, 1);
+    EXPECT_EQ(outputs(), std::vector<std::string>());
 }
 
 TEST_F(BadInput, FailureLeavesAnOldPictureAlone) {

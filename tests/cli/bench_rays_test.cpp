@@ -112,7 +112,7 @@ TEST_F(RayBenchTest, NothingMeasuredIsAFailure) {
     const Outcome run = this->run(small({"--scenes", in("broken.obj"), "--out", out("b.json")}));
     EXPECT_EQ(run.status, 1);
     ASSERT_EQ(run.complaints().size(), 1u) << run.err;
-    EXPECT_NE(run.err.find("none of the 1 rows could be measured: "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("none of 1 row could be measured: "), std::string::npos) << run.err;
 }
 
 TEST_F(RayBenchTest, StandInsAndAnimatedScenes) {
@@ -198,7 +198,7 @@ TEST_F(RayBenchTest, ImpossibleValues) {
         {{"--device", "no such device"}, "peelray devices"},
         {{"--out", in("nowhere/b.json")}, "nowhere"},
         {{"--out", out("b"), "--markdown", out("b")}, "written twice"},
-        {{"--plots", in("file")}, "cannot make the folder"}};
+        {{"--plots", in("file")}, "is not a folder"}};
     for (const auto& [words, says] : cases) {
         SCOPED_TRACE(testing::PrintToString(words));
         expect_refused(run(small(words)), 1, says);

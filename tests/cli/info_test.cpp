@@ -43,7 +43,7 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
     expect_says(run.out, {"triangles 2 (0 without area)", "bounds -1 -1 2 to 1 1 2", "pane: 2 triangles", "amber:",
-                          "transmission 1", "1.55", "front row: eye 0 0 0, vertical field of view 60.0 degrees",
+                          "transmission 1", "1.55", "0 front row: eye 0 0 0, vertical field of view 60.0 degrees",
                           "extensions used KHR_materials_ior, KHR_materials_sheen, KHR_materials_transmission",
                           "extensions without effect KHR_materials_sheen"});
 }
@@ -64,7 +64,7 @@ TEST_F(InfoCommand, MasksAndBlending) {
     put("square.gltf", gltf.dump());
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
-    expect_says(run.out, {"holes where alpha is below 0.25", "note 1 materials with alphaMode BLEND drawn opaque"});
+    expect_says(run.out, {"holes where alpha is below 0.25", "note 1 material with alphaMode BLEND drawn opaque"});
     EXPECT_EQ(run.out.find("MASK"), std::string::npos) << run.out;
 }
 

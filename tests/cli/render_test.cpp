@@ -1,12 +1,9 @@
 // `peelray render` where all is well: every option, at 64x48.
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
 
 #include <cmath>
 #include <map>
 
+#include "cli/channels.h"
 #include "cli/program_fixture.h"
 #include "image/image.h"
 
@@ -29,22 +26,6 @@ class RenderCommand : public ProgramTest {
         return get(out("a.png"));
     }
 };
-
-/// All channels of an auxiliary picture of 64x48 pixels, one behind the other in the order of their names.
-std::vector<float> channels_of(const std::filesystem::path& path) {
-    constexpr size_t width = 64, height = 48;
-    Imf::InputFile file(path.c_str());
-    std::vector<std::string> names;
-    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) names.push_back(c.name());
-    std::vector<float> values(names.size() * width * height);
-    Imf::FrameBuffer frame;
-    for (size_t i = 0; i < names.size(); i++)
-        frame.insert(names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&values[i * width * height]),
-                                          sizeof(float), sizeof(float) * width));
-    file.setFrameBuffer(frame);
-    file.readPixels(0, int(height) - 1);
-    return values;
-}
 
 const std::vector<std::string> kAway = {"--eye", "0,0,5", "--look", "0,0,10"};
 
@@ -247,6 +228,53 @@ TEST_F(RenderCommand, CamerasByNameAndNumber) {
     EXPECT_NE(bytes(scene, {"--fov", "80"}), first);
     std::filesystem::remove(out("a.png"));
     expect_refused(render(scene, {"--camera", "far"}), 1, "0: near, 1: flat");
+}
+
+TEST_F(RenderCommand, CamerasAreNumberedAsTheFileDoes) {
+    auto gltf = square_gltf();
+    const auto lens = [](double yfov) {
+        return nlohmann::json{{"type", "perspective"}, {"perspective", {{"yfov", yfov}, {"znear", 0.1}}}};
+    };
+    gltf["cameras"] = {lens(0.9), lens(0.5), lens(0.7), lens(1.1)};
+    gltf["cameras"][2]["name"] = "tele";
+    // Camera 2 is met first; 1 is shown twice; 0 by no node.
+    gltf["nodes"] = {{{"mesh", 0}},
+                     {{"camera", 2}, {"translation", {0, 0, 4}}, {"name", "post"}},
+                     {{"camera", 1}, {"translation", {0, 0, 3}}, {"name", "left"}},
+                     {{"camera", 1}, {"translation", {0.5, 0, 3}}, {"name", "right"}},
+                     {{"camera", 3}, {"translation", {0, 0, 5}}}};
+    gltf["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+    put("square.bin", square_bytes());
+    put("cameras.gltf", gltf.dump());
+    const std::string scene = in("cameras.gltf");
+    const auto by_hand = [&](const std::string& eye, const std::string& look, double yfov) {
+        return bytes(scene, {"--eye", eye, "--look", look, "--fov", std::to_string(yfov * 180 / 3.14159265358979)});
+    };
+    const std::string left = by_hand("0,0,3", "0,0,0", 0.5), right = by_hand("0.5,0,3", "0.5,0,0", 0.5),
+                      post = by_hand("0,0,4", "0,0,0", 0.7), last = by_hand("0,0,5", "0,0,0", 1.1);
+    EXPECT_EQ(bytes(scene), left) << "the first that a node shows, as the file counts";
+    for (const char* name : {"1", "1.0", "left"}) EXPECT_EQ(bytes(scene, {"--camera", name}), left) << name;
+    for (const char* name : {"1.1", "right"}) EXPECT_EQ(bytes(scene, {"--camera", name}), right) << name;
+    for (const char* name : {"2", "tele", "post"}) EXPECT_EQ(bytes(scene, {"--camera", name}), post) << name;
+    EXPECT_EQ(bytes(scene, {"--camera", "3"}), last);
+    std::filesystem::remove(out("a.png"));
+    expect_refused(
+        render(scene, {"--camera", "0"}), 1,
+        "shows its camera 0 ((no name)) on no node, so that it has no place: there is 1.0: left, 1.1: right, "
+        "2: tele, 3: (no name)");
+    expect_refused(render(scene, {"--camera", "4"}), 1, "has no camera '4': there is 1.0: left");
+    const Outcome info = run({"info", scene});
+    EXPECT_NE(info.out.find("  1.1 right: eye 0.5 0 3, "), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("  2 tele (node post): eye 0 0 4, "), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("  0 (no name): on no node, without a place; "), std::string::npos) << info.out;
+}
+
+TEST_F(RenderCommand, FoldersOfOutputsAreMade) {
+    expect_done(render(in("cube.obj"), {"--aov", "depth", "--stats", out("numbers/of/a.json")}, "pictures/a.png"),
+                {"numbers", "pictures"});
+    EXPECT_TRUE(std::filesystem::exists(out("numbers/of/a.json")));
+    EXPECT_TRUE(std::filesystem::exists(out("pictures/a.depth.exr")));
+    EXPECT_TRUE(std::filesystem::exists(out("pictures/a.png")));
 }
 
 TEST_F(RenderCommand, EyeLookUpFov) {

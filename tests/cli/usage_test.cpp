@@ -81,7 +81,75 @@ TEST_F(Usage, MalformedValues) {
                  {{"--time", "x"}, "--time"},
                  {{"--fps", "x"}, "--fps"},
                  {{"--spp"}, "--spp"},
-                 {{"--spp", "1", "--spp", "2"}, "--spp"}});
+                 {{"--spp", "1", "--spp", "x"}, "--spp: 'x' is not a whole number"}});
+}
+
+TEST_F(Usage, OfAnOptionGivenTwiceTheLastCounts) {
+    put("cube.obj", kCube);
+    const auto bytes = [&](const Words& more, const std::string& name) {
+        const Outcome run = render(in("cube.obj"), more, name);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return get(out(name));
+    };
+    const Words eye = {"--eye", "3,2,4", "--background", "1,0,0", "--exposure", "1"};
+    const std::string once = bytes(eye, "once.png");
+    EXPECT_EQ(bytes({"--eye", "9,9,9", "--background", "0,0,0", "--exposure", "-3", "--eye", "3,2,4", "--exposure", "1",
+                     "--background", "1,0,0"},
+                    "twice.png"),
+              once);
+    EXPECT_NE(bytes({"--eye", "3,2,4", "--background", "1,0,0", "--exposure", "1", "--exposure", "-3"}, "other.png"),
+              once);
+    for (const std::string& name : outputs()) std::filesystem::remove(out(name));
+    expect_done(render(in("cube.obj"), {"--output", out("last.png"), "--sky", "--sky"}, "first.png"), {"last.png"});
+    put("rays.npy", rays_npy({0.5f, 0.5f, 3, 0, 0, 0, -1, 9}));
+    std::filesystem::remove(out("last.png"));
+    expect_done(run({"trace", in("cube.obj"), "--out", out("a.npy"), "--rays", in("gone.npy"), "--out", out("b.npy"),
+                     "--rays", in("rays.npy")}),
+                {"b.npy"});
+}
+
+TEST_F(Usage, WhatAMessageSuggestsWorks) {
+    put("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string scene = in("triangle.obj"), begin = "choose at most ";
+    const Outcome coarse = render(scene, {"--hit", "tolerance", "--tolerance", "5"});
+    const size_t at = coarse.err.find(begin);
+    ASSERT_NE(at, std::string::npos) << coarse.err;
+    const std::string most =
+        coarse.err.substr(at + begin.size(), coarse.err.find(' ', at + begin.size()) - at - begin.size());
+    expect_done(render(scene, {"--hit", "tolerance", "--tolerance", most}), {"a.png"});
+    std::filesystem::remove(out("a.png"));
+    expect_refused(render(scene, {"--depth", "16"}), 1,
+                   "use --depth 16 with --traversal two-level or mipmap, and with --hit tolerance or planar");
+    expect_done(render(scene, {"--depth", "16", "--traversal", "mipmap", "--hit", "planar", "--ldc", "64"}), {"a.png"});
+    std::filesystem::remove(out("a.png"));
+    expect_refused(run({"info", in("")}), 1, "not a regular file but a folder; name a scene in it");
+}
+
+TEST_F(Usage, ASceneWithoutACommand) {
+    put("cube.obj", kCube);
+    put("my notes.txt", "x");
+    std::filesystem::create_directory(folder / "models");
+    put("models/b.glb", "x");
+    put("models/a.gltf", "x");
+    std::filesystem::create_directory(folder / "empty");
+    const auto says = [&](const Words& words, const std::string& advice) {
+        SCOPED_TRACE(testing::PrintToString(words));
+        expect_refused(run(words), 2, "name a command before the scene: peelray render " + advice + " (see");
+    };
+    says({"model.glb"}, "model.glb -o picture.png");
+    says({"./x.obj"}, "./x.obj -o picture.png");
+    says({in("cube.obj")}, in("cube.obj") + " -o picture.png");
+    says({"gone/MODEL.GLTF"}, "gone/MODEL.GLTF -o picture.png");
+    says({"builtin:teapots"}, "builtin:teapots -o picture.png");
+    says({in("my notes.txt")}, "'" + in("my notes.txt") + "' -o picture.png");
+    says({in("models")}, in("models/a.gltf") + " -o picture.png");
+    says({in("empty")}, in("empty/MODEL.glb") + " -o picture.png");
+    says({"model.glb", "--size", "64x48"}, "model.glb --size 64x48 -o picture.png");
+    says({"model.glb", "-o", "a.exr"}, "model.glb -o a.exr");
+    says({"model.glb", "--output=a.exr"}, "model.glb --output=a.exr");
+    expect_refused(run({in("cube.obj"), "info"}), 2,
+                   "the command comes before the scene: peelray info " + in("cube.obj"));
+    expect_refused(run({"x.obj", "render", "-o", "a.png"}), 2, "peelray render x.obj -o a.png");
 }
 
 TEST_F(Usage, OptionsThatExcludeEachOther) {

@@ -1,5 +1,6 @@
 // Radiance and OpenEXR: what we write, what others write, and what is broken.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfDeepScanLineOutputPart.h>
@@ -11,6 +12,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfTiledOutputFile.h>
 
 #include <fmt/core.h>
@@ -230,6 +232,53 @@ TEST_F(Hdr, ReadsLuminanceAndChroma) {
         EXPECT_NEAR(pixel.y, 0.5f, 0.01f);
         EXPECT_NEAR(pixel.z, 0.75f, 0.01f);
         EXPECT_EQ(pixel.w, 1);
+    }
+}
+
+/// A picture of one pixel, of which the file says which colours its channels are.
+std::string with_primaries(const std::filesystem::path& path, const Imf::Chromaticities& primaries,
+                           const glm::vec3& color) {
+    Imf::Header header(1, 1);
+    Imf::addChromaticities(header, primaries);
+    Imf::FrameBuffer buffer;
+    for (int c = 0; c < 3; ++c) {
+        const char* name[] = {"R", "G", "B"};
+        header.channels().insert(name[c], Imf::Channel(Imf::FLOAT));
+        buffer.insert(name[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(&color[c])), 4, 4));
+    }
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(1);
+    return path;
+}
+
+TEST_F(Hdr, ConvertsOtherPrimariesOfAnExr) {
+    using Imath::V2f;
+    const V2f red(0.64f, 0.33f), green(0.3f, 0.6f), blue(0.15f, 0.06f), white(0.3127f, 0.329f);
+    const auto read = [&](const Imf::Chromaticities& primaries, const glm::vec3& color) {
+        return glm::vec3(read_hdr(with_primaries(folder / "p.exr", primaries, color)).pixels[0]);
+    };
+    const auto expect = [](const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
+        EXPECT_LT(glm::length(a - b), tolerance) << a.x << " " << a.y << " " << a.z;
+    };
+    // Its own: to the bit.
+    EXPECT_EQ(read({red, green, blue, white}, {0.1f, 0.7f, 3}), glm::vec3(0.1f, 0.7f, 3));
+    // The same in another order.
+    expect(read({green, blue, red, white}, {1, 0, 0}), {0, 1, 0});
+    expect(read({green, blue, red, white}, {0.25f, 2, 0.5f}), {0.5f, 0.25f, 2});
+    // White is white, whatever the file's is; ACES has (0.32168, 0.33767).
+    const Imf::Chromaticities aces({0.7347f, 0.2653f}, {0, 1}, {0.0001f, -0.077f}, {0.32168f, 0.33767f});
+    expect(read(aces, {1, 1, 1}), {1, 1, 1});
+    // From there to Rec. 709 with Bradford's adaptation, as ACES publishes it (ACES2065-1 to linear BT.709).
+    expect(read(aces, {0.5f, 0.25f, 0.125f}), {0.9285f, 0.1929f, 0.1007f}, 0.01f);
+    // What makes no colours is left alone, with a note.
+    for (const Imf::Chromaticities& bad :
+         {Imf::Chromaticities(red, red, red, white), Imf::Chromaticities(red, green, V2f(nan, 0), white),
+          Imf::Chromaticities(red, green, blue, V2f(0, 0))}) {
+        std::string note;
+        const auto file = with_primaries(folder / "bad.exr", bad, {1, 2, 3});
+        EXPECT_EQ(glm::vec3(read_hdr(file, &note).pixels[0]), glm::vec3(1, 2, 3));
+        EXPECT_NE(note.find("bad.exr: its primaries"), std::string::npos) << note;
     }
 }
 

@@ -133,21 +133,20 @@ TEST(GltfAnimation, ChannelsWithoutTheirParts) {
         EXPECT_TRUE(has_note(scene, note));
         EXPECT_EQ(positions_at(scene, 0.5), positions_at(scene, 0));
     };
-    still([](json& a) { a["channels"][0]["target"].erase("node"); },
-          "1 animation channels of nodes that are not shown");
-    still([](json& a) { a["channels"][0]["target"]["path"] = "pointer"; }, "1 animation channels of an unknown path");
-    still([](json& a) { a["channels"][0]["target"]["path"] = "weights"; }, "1 animation channels of weights without");
+    still([](json& a) { a["channels"][0]["target"].erase("node"); }, "1 animation channel of nodes that are not shown");
+    still([](json& a) { a["channels"][0]["target"]["path"] = "pointer"; }, "1 animation channel of an unknown path");
+    still([](json& a) { a["channels"][0]["target"]["path"] = "weights"; }, "1 animation channel of weights without");
     const Scene empty = load(folder, changed([](json& a) { a = json::object(); }));
     EXPECT_EQ(empty.animations.at(0).duration, 0);
     EXPECT_EQ(positions_at(empty, 0.5), positions_at(empty, 0));
     json gltf = lifted();
     gltf["nodes"].push_back({{"name", "elsewhere"}});
     gltf["animations"][0]["channels"][0]["target"]["node"] = 3;
-    EXPECT_TRUE(has_note(load(folder, gltf), "1 animation channels of nodes that are not shown"));
+    EXPECT_TRUE(has_note(load(folder, gltf), "1 animation channel of nodes that are not shown"));
     gltf = lifted();
     gltf["nodes"][2].erase("translation");
     gltf["nodes"][2]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1};
-    EXPECT_TRUE(has_note(load(folder, gltf), "1 animation channels of nodes with a matrix"));
+    EXPECT_TRUE(has_note(load(folder, gltf), "1 animation channel of nodes with a matrix"));
 }
 
 TEST(GltfAnimation, OfTwoChannelsForTheSameTheLaterCounts) {
@@ -158,7 +157,7 @@ TEST(GltfAnimation, OfTwoChannelsForTheSameTheLaterCounts) {
     gltf["animations"][0]["samplers"].push_back({{"input", animation["samplers"][0]["input"]}, {"output", output}});
     gltf["animations"][0]["channels"].push_back({{"sampler", 1}, {"target", {{"node", 2}, {"path", "translation"}}}});
     const Scene scene = load(folder, gltf);
-    EXPECT_TRUE(has_note(scene, "1 animation channels that move what an earlier one moves already"));
+    EXPECT_TRUE(has_note(scene, "1 animation channel that moves what an earlier one moves already"));
     float top = 0;
     for (const glm::vec3& p : positions_at(scene, 1)) top = std::max(top, p.y);
     EXPECT_FLOAT_EQ(top, 9);

@@ -249,9 +249,9 @@ TEST(GltfBad, Hierarchy) {
     EXPECT_MENTIONS(error_of(folder, gltf), "two parents");
     gltf["nodes"] = {{{"mesh", 0}, {"children", {5}}}};
     gltf["scenes"][0]["nodes"] = {0};
-    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 nodes");
+    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 node");
     gltf["scene"] = 3;
-    EXPECT_MENTIONS(error_of(folder, gltf), "scenes");
+    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 scene");
 }
 
 TEST(GltfBad, RequiredExtensions) {
@@ -293,7 +293,7 @@ TEST(GltfBad, Images) {
     gltf["materials"][0] = {{"normalTexture", {{"index", 0}}}};
     EXPECT_MENTIONS(error_of(folder, gltf), "text.png");
     gltf["materials"][0]["normalTexture"]["index"] = 1;
-    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 textures");
+    EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(GltfSkin, JointsOutOfRange) {
     EXPECT_MENTIONS(error_of(folder, gltf), "skins[0].joints");
     gltf = lifted();
     gltf["nodes"][0]["skin"] = 1;
-    EXPECT_MENTIONS(error_of(folder, gltf), "nodes[0].skin: 1 is out of range, the file has 1 skins");
+    EXPECT_MENTIONS(error_of(folder, gltf), "nodes[0].skin: 1 is out of range, the file has 1 skin");
     gltf = lifted();
     auto& attributes = primitive(gltf)["attributes"];
     attributes["JOINTS_0"] =
@@ -151,14 +151,14 @@ TEST(GltfSkin, OddWeights) {
         return positions_at(scene, 1)[0].y;
     };
     EXPECT_FLOAT_EQ(height(0.25f, 0.75f, ""), 1.5f);
-    EXPECT_FLOAT_EQ(height(0.5f, 1.5f, "1 vertices whose joint weights do not sum to one rescaled"), 1.5f);
-    EXPECT_FLOAT_EQ(height(1e-30f, 3e-30f, "1 vertices whose joint weights do not sum to one rescaled"), 1.5f);
-    EXPECT_FLOAT_EQ(height(1e38f, 3e38f, "1 vertices whose joint weights do not sum to one rescaled"), 1.5f);
-    EXPECT_FLOAT_EQ(height(-1, 1, "1 joint weights that are negative or not finite count as 0"), 2);
-    EXPECT_FLOAT_EQ(height(NAN, 1, "1 joint weights that are negative or not finite count as 0"), 2);
-    EXPECT_FLOAT_EQ(height(INFINITY, 1, "1 joint weights that are negative or not finite count as 0"), 2);
-    EXPECT_FLOAT_EQ(height(0, 0, "1 vertices that no joint holds follow their node"), 0);
-    EXPECT_FLOAT_EQ(height(NAN, -2, "1 vertices that no joint holds follow their node"), 0);
+    EXPECT_FLOAT_EQ(height(0.5f, 1.5f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
+    EXPECT_FLOAT_EQ(height(1e-30f, 3e-30f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
+    EXPECT_FLOAT_EQ(height(1e38f, 3e38f, "1 vertex whose joint weights do not sum to one rescaled"), 1.5f);
+    EXPECT_FLOAT_EQ(height(-1, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
+    EXPECT_FLOAT_EQ(height(NAN, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
+    EXPECT_FLOAT_EQ(height(INFINITY, 1, "1 joint weight that is negative or not finite counts as 0"), 2);
+    EXPECT_FLOAT_EQ(height(0, 0, "1 vertex that no joint holds follows its node"), 0);
+    EXPECT_FLOAT_EQ(height(NAN, -2, "1 vertex that no joint holds follows its node"), 0);
     json gltf = weighted(0, 0);
     gltf["nodes"][0]["translation"] = {0, 7, 0};
     EXPECT_FLOAT_EQ(positions_at(load(folder, gltf), 1)[0].y, 7);

@@ -66,7 +66,7 @@ TEST(Gltf, NonIndexedStripsFansAndPoints) {
     gltf["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
     const Scene with_points = load(folder, gltf);
     EXPECT_EQ(with_points.meshes[0].primitives.size(), 1u);
-    EXPECT_TRUE(has_note(with_points, "1 primitives of points or lines"));
+    EXPECT_TRUE(has_note(with_points, "1 primitive of points or lines"));
 }
 
 TEST(Gltf, PointsAndLinesOfASize) {
@@ -442,7 +442,7 @@ TEST(Gltf, AlphaModes) {
     scene = with({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", factor}});
     EXPECT_EQ(scene.materials.at(0).alpha_cutoff, 0);
     EXPECT_EQ(corners_present(scene), all(true));
-    EXPECT_TRUE(has_note(scene, "1 materials with alphaMode BLEND drawn opaque"));
+    EXPECT_TRUE(has_note(scene, "1 material with alphaMode BLEND drawn opaque"));
 }
 
 TEST(Gltf, MasksMultiplyFactorTextureAndVertexAlpha) {

@@ -184,7 +184,7 @@ TEST(Mtl, PhysicallyBasedAndEmissiveMaps) {
     EXPECT_FLOAT_EQ(material_of(scene).metallic, 0.5f);
     expect_color(material_of(scene).emissive, {1, 1, 0});
     EXPECT_EQ(scene.notes.size(), 3u);
-    for (const std::string& note : scene.notes) EXPECT_MENTIONS(note, "replaced by their mean");
+    for (const std::string& note : scene.notes) EXPECT_MENTIONS(note, "replaced by its mean");
     const Scene bump = load_with(folder, "newmtl m\nbump -bm 0.3 b.png\nmap_Bump b.png\nnorm b.png\n");
     ASSERT_EQ(bump.notes.size(), 1u);
     EXPECT_MENTIONS(bump.notes[0], "3 normal and bump maps ignored");

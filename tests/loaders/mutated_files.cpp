@@ -14,7 +14,8 @@
 int main(int count, char** words) {
     if (count < 3) {
         fmt::print(stderr,
-                   "usage: {} FORMAT COUNT [SEED [FOLDER]]; formats: obj mtl ply stl off gltf glb draco meshopt\n",
+                   "usage: {} FORMAT COUNT [SEED [FOLDER]]; formats: obj mtl ply stl off gltf glb draco meshopt exr "
+                   "hdr\n",
                    words[0]);
         return 2;
     }

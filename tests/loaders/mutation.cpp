@@ -1,9 +1,13 @@
 #include "loaders/mutation.h"
 
+#include <unistd.h>
+
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
+#include "image/image.h"
 #include "loaders/compressed_files.h"
 #include "loaders/load.h"
 #include "loaders/scene_files.h"
@@ -150,6 +154,37 @@ std::vector<Sample> meshopt_samples() {
             meshopt_sample(gltf, indices, pack(grid.corners), 4, "INDICES", "NONE")};
 }
 
+/// The bytes of a picture that is written as `name`.
+Sample written_picture(const std::string& name, const Image& image, bool full) {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / fmt::format("peelray_sample_{}_{}", getpid(), name);
+    write_hdr(file, image, full);
+    std::ifstream stream(file, std::ios::binary);
+    Sample sample{name, {std::istreambuf_iterator<char>(stream), {}}};
+    std::filesystem::remove(file);
+    return sample;
+}
+
+/// Sixteen by two pixels, which both formats compress.
+Image gradient(float alpha) {
+    Image image{16, 2, {}};
+    for (int i = 0; i < 32; ++i) image.pixels.emplace_back(0.25f * float(i), 1, 100, i == 7 ? alpha : 1);
+    return image;
+}
+
+std::vector<Sample> hdr_samples() {
+    const std::string plain = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\nEXPOSURE=2\nCOLORCORR=1 1 0.5\n\n+X 2 -Y 3\n";
+    return {written_picture("a.hdr", gradient(1), false), {"b.hdr", plain + std::string("abcdefghijklmnopqrstuvwx")}};
+}
+
+std::vector<Sample> exr_samples() {
+    return {written_picture("a.exr", gradient(1), false), written_picture("b.exr", gradient(0.5f), true)};
+}
+
+bool is_picture(const std::string& format) {
+    return format == "exr" || format == "hdr";
+}
+
 }  // namespace
 
 size_t Mutation::random(size_t below) {
@@ -217,8 +252,8 @@ std::string Mutation::operator()(std::string bytes) {
 }
 
 const std::vector<std::string>& mutation_formats() {
-    static const std::vector<std::string> names = {"obj",  "mtl", "ply",   "stl",    "off",
-                                                   "gltf", "glb", "draco", "meshopt"};
+    static const std::vector<std::string> names = {"obj", "mtl",   "ply",     "stl", "off", "gltf",
+                                                   "glb", "draco", "meshopt", "exr", "hdr"};
     return names;
 }
 
@@ -226,7 +261,8 @@ const std::vector<Sample>& samples(const std::string& format) {
     static const std::map<std::string, std::vector<Sample>> all = {
         {"obj", {{"a.obj", obj_text}}}, {"mtl", {{"m.mtl", mtl_text}}}, {"ply", ply_samples()},
         {"stl", stl_samples()},         {"off", off_samples()},         {"gltf", gltf_samples()},
-        {"glb", glb_samples()},         {"draco", draco_samples()},     {"meshopt", meshopt_samples()}};
+        {"glb", glb_samples()},         {"draco", draco_samples()},     {"meshopt", meshopt_samples()},
+        {"exr", exr_samples()},         {"hdr", hdr_samples()}};
     return all.at(format);
 }
 
@@ -243,7 +279,10 @@ MutationResult load_mutations(const std::string& format, uint64_t count, uint64_
         // From the number alone, so that one that went wrong can be made again.
         write(sample.name, sample.file(Mutation(seed + i)(sample.bytes)));
         try {
-            flatten(load_scene(folder + "/" + (format == "mtl" ? "model.obj" : sample.name)));
+            if (is_picture(format))
+                read_hdr(folder + "/" + sample.name);
+            else
+                flatten(load_scene(folder + "/" + (format == "mtl" ? "model.obj" : sample.name)));
             ++result.loaded;
         } catch (const Error& error) {
             const std::string line = error.what();

@@ -35,9 +35,9 @@ struct Sample {
     std::string file(const std::string& changed) const { return wrapped ? wrapped(changed) : changed; }
 };
 
-/// Formats: obj, mtl, ply, stl, off, gltf, glb, draco, meshopt.
+/// Formats: obj, mtl, ply, stl, off, gltf, glb, draco, meshopt; exr and hdr of environments.
 const std::vector<std::string>& mutation_formats();
-/// Valid files of a format, each with a surface. Throws std::out_of_range for another one.
+/// Valid files of a format, each with a surface or a picture. Throws std::out_of_range for another one.
 const std::vector<Sample>& samples(const std::string& format);
 
 /// What loading some thousands of changed files came to.

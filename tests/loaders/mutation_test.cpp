@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "image/image.h"
 #include "loaders/load.h"
 #include "loaders/scene_files.h"
 
@@ -16,7 +17,9 @@ TEST(Mutation, SamplesAreValid) {
     for (const std::string& format : mutation_formats())
         for (const Sample& sample : samples(format)) {
             const std::string file = folder.write(sample.name, sample.file(sample.bytes));
-            if (format != "mtl") {
+            if (format == "exr" || format == "hdr") {
+                EXPECT_FALSE(read_hdr(file).pixels.empty()) << sample.name;
+            } else if (format != "mtl") {
                 EXPECT_FALSE(flatten(load_scene(file)).triangles.empty()) << sample.name;
             }
         }

@@ -122,7 +122,8 @@ TEST(ObjText, ColorsOfVertices) {
     EXPECT_NEAR(zbrush.colors[zbrush.triangles[0].x].x, 0.2158605f, 1e-6);
     EXPECT_EQ(zbrush.colors[zbrush.triangles[0].z], glm::vec4(0, 0, 1, 1));
     EXPECT_TRUE(notes_of(folder, painted).empty());
-    EXPECT_MENTIONS(notes_of(folder, three_vertices + "f 1 2 3\n#MRGB ff0000ff\n").at(0), "1 colours");
+    EXPECT_MENTIONS(notes_of(folder, three_vertices + "f 1 2 3\n#MRGB ff0000ff\n").at(0),
+                    "1 colour (#MRGB) for 3 vertices");
     EXPECT_MENTIONS(notes_of(folder, "v 0 0 0 255 0 0\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n").at(0), "colours");
 }
 
@@ -133,13 +134,13 @@ TEST(ObjText, WhatHasNoEffectIsNoted) {
         EXPECT_EQ(notes.size(), 1u) << line;
         return notes.empty() ? "" : notes[0];
     };
-    EXPECT_MENTIONS(first("l 1 2 3"), "1 line statements dropped, the first in line 4");
+    EXPECT_MENTIONS(first("l 1 2 3"), "1 line statement dropped, in line 4");
     EXPECT_MENTIONS(first("p 1 2\np 3"), "2 point statements dropped, the first in line 4");
-    EXPECT_MENTIONS(first("f 1 2"), "line statements");
+    EXPECT_MENTIONS(first("f 1 2"), "1 line statement dropped");
     EXPECT_MENTIONS(first("vp 0.5\ncstype bezier\ndeg 3\ncurv 0 1 1 2 3\nend"), "5 statements of free-form curves");
     EXPECT_MENTIONS(first("lod 3"), "\"lod\"");
     EXPECT_MENTIONS(first("bevel on"), "\"bevel\"");
-    EXPECT_MENTIONS(first("s 1"), "smoothing groups");
+    EXPECT_MENTIONS(first("s 1"), "1 smoothing group ignored");
     EXPECT_MENTIONS(first("s off"), "s off");
     EXPECT_MENTIONS(first("vertices follow"), "\"vertices\"");
     EXPECT_MENTIONS(first("usemtl gone"), "\"gone\"");

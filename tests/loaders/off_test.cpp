@@ -67,8 +67,9 @@ TEST(OffFile, ColorsOfFaces) {
     EXPECT_NEAR(color(3).z, 0.6038, 1e-4);
     EXPECT_EQ(color(5), glm::vec4(0, 1, 0, 1));
     EXPECT_EQ(color(6).x, color(6).y);  // 191, 191, 191: the colour map repeats itself
-    EXPECT_MENTIONS(off_notes(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 900\n"), "1 colours grey");
-    EXPECT_MENTIONS(off_notes(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9\n"), "1 colours ignored");
+    EXPECT_MENTIONS(off_notes(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 900\n"), "1 colour grey");
+    EXPECT_MENTIONS(off_notes(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9\n"),
+                    "1 colour ignored, which does not");
     // Whole numbers that are all 0 or 1 are no parts of 255.
     EXPECT_EQ(off_geometry(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 0 0\n").colors[0],
               glm::vec4(1, 0, 0, 1));

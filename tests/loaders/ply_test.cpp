@@ -175,7 +175,7 @@ TEST(PlyFile, SeveralTexturesByNumber) {
     EXPECT_EQ(scene.materials.at(g.materials[1]).base_color_texture, -1);
     EXPECT_EQ(g.materials[2], 0u);
     EXPECT_MENTIONS(all_notes(scene), "gone.png");
-    EXPECT_MENTIONS(all_notes(scene), "1 faces name a texture that the file does not have");
+    EXPECT_MENTIONS(all_notes(scene), "1 face names a texture that the file does not have");
 }
 
 TEST(PlyFile, NormalsAndTextureCoordinatesOfVertices) {

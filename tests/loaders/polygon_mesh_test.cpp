@@ -170,12 +170,12 @@ TEST(PolygonMesh, NotesSayWhatWasDropped) {
     mesh.uvs.values = {{0, 0}, {INFINITY, 0}, {0, 0}, {0, 0}, {0, 0}};
     mesh.colors.values = {{2, 0, 0, 1}, {1, 1, 1, 0.5f}, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}};
     const Scene scene = convert(mesh);
-    EXPECT_EQ(scene.notes,
-              (std::vector<std::string>{
-                  "1 polygons with fewer than three corners dropped", "1 vertices that no polygon uses dropped",
-                  "2 normals without direction replaced", "1 texture coordinates that are not finite replaced by 0",
-                  "1 vertex colours outside of 0 to 1 limited to it",
-                  "1 vertex colours with an alpha below 1 drawn opaque"}));
+    EXPECT_EQ(
+        scene.notes,
+        (std::vector<std::string>{
+            "1 polygon with fewer than three corners dropped", "1 vertex that no polygon uses dropped",
+            "2 normals without direction replaced", "1 texture coordinate that is not finite replaced by 0",
+            "1 vertex colour outside of 0 to 1 limited to it", "1 vertex colour with an alpha below 1 drawn opaque"}));
     for (const glm::vec3& n : scene.meshes[0].primitives[0].normals) EXPECT_EQ(n, glm::vec3(0, 0, 1));
 }
 

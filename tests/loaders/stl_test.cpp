@@ -73,7 +73,7 @@ TEST(StlFile, WrongCounts) {
                     "claims 4000000000 facets, holds 1");
     const Scene more = load_scene(folder.write("c.stl", binary_stl("x", facet_at(0) + "tail", 1)));
     EXPECT_EQ(flatten(more).triangles.size(), 1u);
-    EXPECT_MENTIONS(all_notes(more), "4 bytes after the last of 1 facets");
+    EXPECT_MENTIONS(all_notes(more), "4 bytes after the last of 1 facet");
 }
 
 glm::vec4 facet_color(const Geometry& g, const Scene& scene, size_t triangle) {
@@ -114,7 +114,7 @@ TEST(StlFile, ColorsOfVisCam) {
     EXPECT_EQ(facet_color(g, scene, 0), glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(facet_color(g, scene, 1), glm::vec4(0, 0, 1, 1));
     EXPECT_EQ(facet_color(g, scene, 2), glm::vec4(1));
-    EXPECT_MENTIONS(all_notes(scene), "1 facets have attributes that are no colours");
+    EXPECT_MENTIONS(all_notes(scene), "1 facet has attributes that are no colours");
 }
 
 TEST(StlFile, Bad) {

@@ -144,7 +144,7 @@ TEST(Animate, CarriesACameraWithoutDrift) {
     EXPECT_EQ(later.look, alone.look);
     EXPECT_EQ(later.eye, alone.eye);
     EXPECT_NEAR(glm::length(later.look - later.eye), 3.3333333f, 1e-5f);
-    EXPECT_LT(glm::length(at_rest(scene).cameras[0].look - glm::vec3(0, 1, -3.3333333f)), 1e-5f);
+    EXPECT_LT(glm::length(at_rest(scene).cameras[0].look - glm::dvec3(0, 1, -3.3333333f)), 1e-5f);
     EXPECT_EQ(flatten(scene).positions, flatten(strip()).positions);
 }
 
@@ -169,8 +169,8 @@ TEST(Animate, CamerasAndLightsFollowTheirNodes) {
     scene.lights.resize(1);
     scene.nodes[1].camera = scene.nodes[1].light = 0;
     const Moment moment = moment_of(scene, "move", 0.5);
-    EXPECT_EQ(moment.cameras[0].eye, glm::vec3(0, 0, 1.5f));
-    EXPECT_EQ(moment.cameras[0].look, glm::vec3(0, 0, -2.5f));
+    EXPECT_EQ(moment.cameras[0].eye, glm::dvec3(0, 0, 1.5f));
+    EXPECT_EQ(moment.cameras[0].look, glm::dvec3(0, 0, -2.5f));
     EXPECT_EQ(moment.lights[0].position, glm::vec3(0, 0, 1.5f));
 }
 

@@ -132,7 +132,7 @@ TEST(Turned, GoesRoundTheLookPoint) {
     EXPECT_EQ(same.up, camera.up);
     // A quarter, counter-clockwise from above: what pointed along +x points along -z.
     const Camera quarter = turned(camera, 0.25);
-    EXPECT_LT(glm::length(quarter.eye - glm::vec3(5, 2, -1)), 1e-5f);
+    EXPECT_LT(glm::length(quarter.eye - glm::dvec3(5, 2, -1)), 1e-5f);
     EXPECT_LT(glm::length(quarter.up - glm::vec3(0, 1, -0.5f)), 1e-6f);
     EXPECT_EQ(quarter.look, camera.look);
     EXPECT_LT(glm::length(turned(camera, 1).eye - camera.eye), 1e-5f);

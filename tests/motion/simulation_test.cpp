@@ -33,7 +33,7 @@ TEST(Simulation, WhatSwimsGoesWithTheWater) {
     const Moment start = placed_at(scene, simulation, 0), later = placed_at(scene, simulation, 1.5);
     for (const Water::Float& f : scene.generated.waters[0].floats) {
         EXPECT_NE(start.worlds[size_t(f.node)], later.worlds[size_t(f.node)]);
-        EXPECT_EQ(later.worlds[size_t(f.node)], later.locals[size_t(f.node)]) << "it has no parent";
+        EXPECT_EQ(later.worlds[size_t(f.node)], glm::mat4(later.locals[size_t(f.node)])) << "it has no parent";
     }
 }
 

@@ -45,6 +45,8 @@ class RaySetsTest : public testing::Test {
     Scene scene_;
     Geometry geometry_;
     std::unique_ptr<Oracle> oracle_;
+    glm::vec3 eye() const { return glm::vec3(view_.camera.eye); }
+
     RaySetView view_{};
 };
 
@@ -58,7 +60,7 @@ TEST_F(RaySetsTest, PrimaryRaysGoThroughAllPixelsInTiles) {
     EXPECT_GT(rays[64].direction.x, rays[7].direction.x);  // the second tile stands beside the first
     for (const SurfaceRay& ray : rays) {
         const StartedRay started = leaving_ray(ray, 0.5f);
-        EXPECT_EQ(started.origin, view_.camera.eye);
+        EXPECT_EQ(started.origin, eye());
         EXPECT_EQ(started.tmin, 0);
     }
 }
@@ -76,7 +78,7 @@ TEST_F(RaySetsTest, MirrorRaysLeaveTheFloorAsTheyCame) {
     for (const SurfaceRay& ray : rays) {
         if (!on_floor(ray)) continue;
         floor++;
-        const glm::vec3 came = glm::normalize(ray.point - view_.camera.eye);
+        const glm::vec3 came = glm::normalize(ray.point - eye());
         EXPECT_LT(glm::distance(ray.direction, came * glm::vec3(1, -1, 1)), 1e-5f);
         EXPECT_NEAR(ray.normal.y, 1, 1e-6);
     }
@@ -130,7 +132,7 @@ TEST_F(RaySetsTest, RefractedRaysFollowSnellThroughTheBall) {
         const double sine = glm::length(glm::cross(glm::dvec3(outwards), glm::dvec3(ray.direction)));
         if (i < first) {
             entering++;
-            const glm::dvec3 came = glm::normalize(ray.point - view_.camera.eye);
+            const glm::dvec3 came = glm::normalize(ray.point - eye());
             EXPECT_NEAR(sine * 1.5, glm::length(glm::cross(glm::dvec3(outwards), came)), 5e-3);
             EXPECT_LT(glm::dot(ray.direction, outwards), 0.01f);
         } else if (glm::dot(ray.direction, outwards) > 0.1f) {

@@ -95,7 +95,7 @@ TEST(Flatten, EmptyAndOverflowingScenes) {
 void expect_in_view(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
     const Camera camera = frame_box(lower, upper, aspect);
     EXPECT_NEAR(camera.vertical_fov, glm::radians(40.f), 1e-6);
-    const glm::mat4 view = glm::lookAt(camera.eye, camera.look, camera.up);
+    const glm::mat4 view = glm::lookAt(glm::vec3(camera.eye), glm::vec3(camera.look), camera.up);
     const float tangent = std::tan(camera.vertical_fov / 2);
     float fullest = 0;
     for (int i = 0; i < 8; ++i) {

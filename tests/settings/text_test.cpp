@@ -1,4 +1,5 @@
 // Text to values and back.
+#include "base/text.h"
 #include "settings/text.h"
 
 #include <gtest/gtest.h>
@@ -53,6 +54,13 @@ TEST(Text, Lists) {
     EXPECT_FALSE(parse_as<Tracers>(""));
     EXPECT_EQ(print_text(Tracers{Tracer::ldc, Tracer::cubemap}), "ldc,cubemap");
     EXPECT_EQ(print_text(ChoiceSet<Effect>{Effect::shadow, Effect::reflection}), "reflection,shadow");
+}
+
+TEST(Text, CountsChooseTheirWords) {
+    EXPECT_EQ(counted("{} vert{ex|ices} that {is|are} no one's", 1), "1 vertex that is no one's");
+    EXPECT_EQ(counted("{} vert{ex|ices} that {is|are} no one's", 2), "2 vertices that are no one's");
+    EXPECT_EQ(counted("{} node{|s}", 0), "0 nodes");
+    EXPECT_EQ(counted("{{a|b}} of {} {x} {", 1), "{a|b} of 1 {x} {");
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ TEST(PosedScene, CamerasBySettings) {
     settings.eye = glm::vec3(1, 2, 3);
     settings.fov = 90;
     const PosedScene placed(settings);
-    EXPECT_EQ(placed.camera().eye, glm::vec3(1, 2, 3));
-    EXPECT_EQ(placed.camera().look, 0.5f * (placed.framed().lower + placed.framed().upper));
+    EXPECT_EQ(placed.camera().eye, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(placed.camera().look, glm::dvec3(0.5f * (placed.framed().lower + placed.framed().upper)));
     EXPECT_NE(placed.camera().vertical_fov, own.vertical_fov);
     settings.camera = "nobody";
     try {

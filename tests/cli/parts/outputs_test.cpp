@@ -1,7 +1,11 @@
 // The files that a command is about to write, and those that it did.
 #include "cli/outputs.h"
 
+#include <fstream>
+
+#include "base/error.h"
 #include "cli/picture_files.h"
+#include "image/codecs.h"
 #include "image/image.h"
 #include "image/temp_folder.h"
 #include "settings/aovs.h"
@@ -35,9 +39,29 @@ TEST_F(Outputs, AnInputIsNeverOverwritten) {
 }
 
 TEST_F(Outputs, WhereNothingCanBeWrittenIsSaidBeforehand) {
-    expect_error([&] { check_outputs({folder / "nowhere" / "a"}, {}); }, "nowhere");
     expect_error([&] { check_outputs({folder}, {}); }, folder.string());
-    EXPECT_EQ(files(), 0u);
+    EXPECT_NO_THROW(check_outputs({folder / "new" / "a", folder / "new" / "b", folder / "none" / ".." / "c"}, {}));
+    EXPECT_EQ(files(), 0u) << "checking makes nothing";
+    put("file", "");
+    expect_error([&] { check_outputs({folder / "file" / "a"}, {}); }, "is not a folder");
+    expect_error([&] { check_outputs({folder / "new" / "a", folder / "new"}, {}); }, "would be a file and the folder");
+    expect_error([&] { check_outputs({folder / "new", folder / "new" / "a"}, {}); }, "would be a file and the folder");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Outputs, FoldersAreMadeWhenAFileIsWritten) {
+    store_file(folder / "a" / "b" / "c.txt", "text");
+    EXPECT_EQ(get(folder / "a" / "b" / "c.txt"), "text");
+    store_file(folder / "none" / ".." / "d.txt", "text");
+    EXPECT_FALSE(fs::exists(folder / "none"));
+    const auto fails = [](const fs::path&) { throw Error("half-written"); };
+    EXPECT_THROW(write_atomically(folder / "new" / "deep" / "e.txt", fails), Error);
+    EXPECT_FALSE(fs::exists(folder / "new"));
+    EXPECT_THROW(write_atomically(folder / "a" / "f" / "e.txt", fails), Error);
+    EXPECT_FALSE(fs::exists(folder / "a" / "f"));
+    EXPECT_TRUE(fs::exists(folder / "a" / "b" / "c.txt"));
+    EXPECT_TRUE(write_if_absent(folder / "g" / "h.txt", [](const fs::path& path) { std::ofstream(path) << "x"; }));
+    EXPECT_EQ(get(folder / "g" / "h.txt"), "x");
 }
 
 TEST(PictureFiles, FormatsFollowFromTheName) {
