@@ -49,7 +49,9 @@ SHARED_SIZE(PathBranches, 32);
 #define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is then rendered again
 #define QUEUE_VIEW_BLOCKS 22u  // of large triangles
 #define QUEUE_FINISHED 23u     // workgroups of the pass that runs
-#define QUEUE_COUNTERS 24u
+#define QUEUE_CUT_REFLECTION 24u  // rays that are not traced because the last level is reached
+#define QUEUE_CUT_REFRACTION 25u
+#define QUEUE_COUNTERS 26u
 /// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u

@@ -66,7 +66,10 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
         {"triangles_without_area", cubes.counts.degenerate},
         {"triangles_not_finite", cubes.counts.invalid},
         {"count", cubes.cubes()},
-        {"bare_bodies", cubes.bare}};
+        {"bare_bodies", cubes.bare},
+        {"no_room", nullptr}};
+    if (!cubes.no_room.empty())
+        json["no_room"] = {{"n", cubes.no_room_resolution}, {"hit", name_of(cubes.no_room_hit)}, {"why", cubes.no_room}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);
@@ -131,7 +134,8 @@ Json rays_json(const RayCounts& rays) {
             {"reflection", rays.reflection},
             {"refraction", rays.refraction},
             {"shadow", rays.shadow},
-            {"ambient", rays.ambient}};
+            {"ambient", rays.ambient},
+            {"cut", {{"reflection", rays.cut_reflection}, {"refraction", rays.cut_refraction}}}};
 }
 
 static Json maps_json(const RenderStats& stats) {

@@ -27,6 +27,11 @@ void GltfLoader::refuse_compressed() {
 }
 
 void GltfLoader::write_notes() {
+    if (damaged_images.size() == 1)
+        scene.notes.push_back(fmt::format("{} (the factor is used)", damaged_images.begin()->second));
+    if (damaged_images.size() > 1)
+        scene.notes.push_back(fmt::format("{} images are damaged, the factors are used: the first is {}",
+                                          damaged_images.size(), damaged_images.begin()->second));
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
 }
 

@@ -29,6 +29,7 @@ struct GltfLoader {
     Tally ignored;
     std::vector<UvSource> uv_sources;                            ///< per material
     std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
+    std::map<int, std::string> damaged_images;                   ///< and what is wrong with them
     size_t compressed = 0;                                       ///< primitives whose positions only Draco's data holds
     uint64_t triangles = 0;                                      ///< in all primitives read so far
 

@@ -139,16 +139,29 @@ class MaterialReader {
         uv_.scale = vector(transform, "scale", uv_.scale);
         uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
         const std::optional<int> image = image_if_there(info.index, true);
-        uv_.used = image.has_value();
         if (image) material_.base_color_texture = texture_id(*image, info.index);
+        uv_.used = material_.base_color_texture >= 0;
     }
 
     /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
     void ignore(int texture, const char* sentence) {
         if (texture < 0) return;
         ++loader_.ignored[sentence];
-        if (const auto image = image_if_there(texture, false))
-            check_image(loader_.file.image_bytes(*image), where(*image));
+        const auto image = image_if_there(texture, false);
+        if (image) unless_damaged(*image, [&] { check_image(loader_.file.image_bytes(*image), where(*image)); });
+    }
+
+    /// Does `read`, unless the image is damaged, or it shows that it is: that is noted, and false.
+    template <typename Read>
+    bool unless_damaged(int image, Read read) {
+        if (loader_.damaged_images.contains(image)) return false;
+        try {
+            read();
+            return true;
+        } catch (const Error& error) {
+            loader_.damaged_images.emplace(image, error.text());
+            return false;
+        }
     }
 
     /// The image that a texture shows; none (with a note) where only an extension's format is offered.
@@ -175,7 +188,9 @@ class MaterialReader {
                                : "{} textures other than of the base colour left out, their image files are missing"];
             return std::nullopt;
         }
-        const char* type = foreign_image_type(loader_.file.image_bytes(*image));
+        const char* type = nullptr;
+        if (!unless_damaged(*image, [&] { type = foreign_image_type(loader_.file.image_bytes(*image)); }))
+            return std::nullopt;
         if (!type) return image;
         ++loader_.ignored[fmt::format(
             "{{}} textures left out, their images are of the type {}, which is not read: the factors are used", type)];
@@ -192,7 +207,11 @@ class MaterialReader {
             loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
         if (added) {
             const std::string& name = model_.images[static_cast<size_t>(image)].name;
-            Texture decoded = decode_image(loader_.file.image_bytes(image), where(image));
+            Texture decoded;
+            if (!unless_damaged(image, [&] { decoded = decode_image(loader_.file.image_bytes(image), where(image)); })) {
+                entry->second = -1;
+                return -1;
+            }
             decoded.name = name.empty() ? loader_.file.image_file(image) : name;
             decoded.wrap_u = u;
             decoded.wrap_v = v;
@@ -212,7 +231,11 @@ class MaterialReader {
     std::optional<glm::vec4> mean_of(int texture, bool srgb) {
         const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture, false);
         if (!image) return std::nullopt;
-        return mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
+        std::optional<glm::vec4> mean;
+        unless_damaged(*image, [&] {
+            mean = mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
+        });
+        return mean;
     }
 
     GltfLoader& loader_;

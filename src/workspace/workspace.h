@@ -62,6 +62,7 @@ class Workspace {
   private:
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
+    void note_cubes(const RenderStats& stats);
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 
@@ -81,6 +82,8 @@ class Workspace {
     bool noted_ambient_ = false;    ///< said that a tracer has none
     bool noted_tolerance_ = false;  ///< said that it is too small
     bool noted_culled_ = false;     ///< said that the camera is behind single-sided faces
+    bool noted_cut_ = false;        ///< said that rays end too early
+    ChoiceSet<HitTest> noted_room_;  ///< said that these stand for what found no room
 };
 
 }  // namespace peelray
