@@ -69,7 +69,8 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
         {"bare_bodies", cubes.bare},
         {"no_room", nullptr}};
     if (!cubes.no_room.empty())
-        json["no_room"] = {{"n", cubes.no_room_resolution}, {"hit", name_of(cubes.no_room_hit)}, {"why", cubes.no_room}};
+        json["no_room"] = {
+            {"n", cubes.no_room_resolution}, {"hit", name_of(cubes.no_room_hit)}, {"why", cubes.no_room}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);

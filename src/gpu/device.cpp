@@ -91,8 +91,9 @@ void check_vulkan(VkResult result, std::string_view what) {
         fail("the Vulkan device was lost while {}: the driver gave up; try a smaller {} or {}, or another {}", what,
              setting::size, setting::ldc, setting::device);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        throw NoRoom(fmt::format("out of memory while {}", what),
-                     fmt::format("choose a smaller {} or {}, or another {}", setting::size, setting::ldc, setting::device));
+        throw NoRoom(
+            fmt::format("out of memory while {}", what),
+            fmt::format("choose a smaller {} or {}, or another {}", setting::size, setting::ldc, setting::device));
     fail("Vulkan error {} while {}", int(result), what);
 }
 

@@ -38,9 +38,9 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
         throw NoRoom(fmt::format("{} pixels or cells are more than the cubes' tables can number", size.cells),
                      device_.room_advice());
     if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
-        throw NoRoom(fmt::format("{} nodes and {} samples are more than the cubes' tables can number", size.nodes,
-                                 size.samples),
-                     device_.room_advice());
+        throw NoRoom(
+            fmt::format("{} nodes and {} samples are more than the cubes' tables can number", size.nodes, size.samples),
+            device_.room_advice());
     if (has_patches()) {
         const uint64_t triangles = uint64_t(bodies().back().first_triangle) + bodies().back().triangles;
         if (triangles > most_exact_triangles(device_))
@@ -69,7 +69,13 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
 void Cubes::trim(const TableSize& size) {
     const MemoryPart part(device_, "cubes");
     Commands commands(device_);  // of its own: the builder's hold the times of the build
-    const auto to = [&](Buffer& buffer, uint64_t bytes) { shrink(device_, commands, buffer, bytes); };
+    const auto to = [&](Buffer& buffer, uint64_t bytes) {
+        try {
+            shrink(device_, commands, buffer, bytes);
+        } catch (const NoRoom&) {
+            // A moment long both must live: then the larger one stays.
+        }
+    };
     to(samples, size.samples * 8);
     to(sample_ids, size.samples * 4);
     to(patches, size.samples * 16);

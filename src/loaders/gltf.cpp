@@ -32,6 +32,7 @@ void GltfLoader::write_notes() {
     if (damaged_images.size() > 1)
         scene.notes.push_back(fmt::format("{} images are damaged, the factors are used: the first is {}",
                                           damaged_images.size(), damaged_images.begin()->second));
+    for (const auto& [sentence, count] : file.faults()) ignored[sentence] += count;
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(fmt::format(fmt::runtime(sentence), count));
 }
 

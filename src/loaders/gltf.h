@@ -7,13 +7,11 @@
 #include <tuple>
 #include <vector>
 
+#include "loaders/gltf_check.h"
 #include "loaders/gltf_file.h"
 #include "scene/scene.h"
 
 namespace peelray {
-
-/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
-using Tally = std::map<std::string, size_t>;
 
 /// Where a material takes its base colour's coordinates from.
 struct UvSource {

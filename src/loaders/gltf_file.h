@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 
 #include "base/error.h"
 #include "loaders/files.h"
+#include "loaders/gltf_check.h"
 
 namespace peelray {
 
@@ -30,8 +32,8 @@ class GltfFile {
     const std::vector<std::filesystem::path>& files() const { return files_; }
     /// All indices in it are in range, and vectors have the format's length or none at all.
     const tinygltf::Model& model() const { return model_; }
-    /// How many nodes have a matrix and a translation, rotation or scale as well, which tinygltf drops.
-    size_t nodes_placed_twice() const { return nodes_placed_twice_; }
+    /// What is invalid about it and no reason to refuse it, seen before tinygltf dropped it.
+    const Tally& faults() const { return faults_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
     std::string where(const char* list, size_t index) const { return fmt::format("{}.{}[{}]", name_, list, index); }
 
@@ -66,7 +68,8 @@ class GltfFile {
     struct Glb {
         std::span<const uint8_t> json, binary;
     };
-    Glb split_glb(std::span<const uint8_t> all) const;
+    Glb split_glb(std::span<const uint8_t> all);
+    void hide_unknown_types(nlohmann::json& json);
     void take_uris(nlohmann::json& json, std::optional<size_t> glb_bytes);
     void load(const std::string& text, const Glb* glb);
     Bytes read_uri(const std::string& uri, const std::string& where);
@@ -94,8 +97,9 @@ class GltfFile {
     };
     std::vector<ImageSource> image_sources_;
     std::vector<std::optional<Bytes>> loaded_images_;
-    size_t nodes_placed_twice_ = 0;
-    uint64_t decoded_ = 0;  ///< components decoded so far, see spend()
+    Tally faults_;
+    std::map<size_t, std::string> foreign_accessors_;  ///< those of an unknown type, which nothing may read
+    uint64_t decoded_ = 0;                             ///< components decoded so far, see spend()
 };
 
 }  // namespace peelray

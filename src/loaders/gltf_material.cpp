@@ -16,7 +16,8 @@ glm::vec3 to_vec3(const std::vector<double>& v) {
     return {v[0], v[1], v[2]};
 }
 
-Texture::Wrap wrap_mode(int mode, const std::string& where) {
+/// None: unknown.
+std::optional<Texture::Wrap> wrap_mode(int mode) {
     switch (mode) {
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
             return Texture::Wrap::clamp;
@@ -25,7 +26,7 @@ Texture::Wrap wrap_mode(int mode, const std::string& where) {
         case TINYGLTF_TEXTURE_WRAP_REPEAT:
             return Texture::Wrap::repeat;
         default:
-            fail("{}: {} is no wrap mode", where, mode);
+            return std::nullopt;
     }
 }
 
@@ -68,6 +69,7 @@ class MaterialReader {
         ignore(from_.normalTexture.index, "{} normal maps ignored");
         ignore(from_.occlusionTexture.index, "{} occlusion textures ignored");
         read_alpha_mode();
+        note_ior();
         loader_.scene.materials.push_back(std::move(material_));
         loader_.uv_sources.push_back(uv_);
     }
@@ -130,6 +132,11 @@ class MaterialReader {
                 fail("{}: attenuationDistance {} must be above 0", loader_.file.where("materials", index_), distance);
             material_.attenuation_distance = static_cast<float>(distance);
         }
+    }
+
+    void note_ior() {
+        const double ior = number(extension(from_.extensions, "KHR_materials_ior"), "ior", 1.5);
+        if (ior > 0 && ior < 1) ++loader_.ignored["{} indices of refraction between 0 and 1 (VALUE_NOT_IN_RANGE)"];
     }
 
     void read_base_color(const tinygltf::TextureInfo& info) {
@@ -200,15 +207,20 @@ class MaterialReader {
     int texture_id(int image, int texture) {
         const int index = model_.textures[static_cast<size_t>(texture)].sampler;
         const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
-        const std::string at = loader_.file.where("samplers", static_cast<size_t>(std::max(index, 0)));
-        const Texture::Wrap u = wrap_mode(sampler.wrapS, at + ".wrapS"), v = wrap_mode(sampler.wrapT, at + ".wrapT");
+        const auto known = [&](int mode) {
+            const std::optional<Texture::Wrap> wrap = wrap_mode(mode);
+            if (!wrap) ++loader_.ignored["{} unknown wrap modes read as REPEAT (VALUE_NOT_IN_LIST)"];
+            return wrap.value_or(Texture::Wrap::repeat);
+        };
+        const Texture::Wrap u = known(sampler.wrapS), v = known(sampler.wrapT);
         const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         const auto [entry, added] =
             loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
         if (added) {
             const std::string& name = model_.images[static_cast<size_t>(image)].name;
             Texture decoded;
-            if (!unless_damaged(image, [&] { decoded = decode_image(loader_.file.image_bytes(image), where(image)); })) {
+            if (!unless_damaged(image,
+                                [&] { decoded = decode_image(loader_.file.image_bytes(image), where(image)); })) {
                 entry->second = -1;
                 return -1;
             }
@@ -232,9 +244,8 @@ class MaterialReader {
         const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture, false);
         if (!image) return std::nullopt;
         std::optional<glm::vec4> mean;
-        unless_damaged(*image, [&] {
-            mean = mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
-        });
+        unless_damaged(*image,
+                       [&] { mean = mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb); });
         return mean;
     }
 

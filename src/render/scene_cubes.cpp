@@ -14,8 +14,9 @@ constexpr float kPlanarResolution = 1024;
 /// as much that its voxels are at most so many times as fine.
 constexpr float kLeast = 0.25f, kFinest = 4;
 constexpr size_t kFewBodies = 16;
-/// Where cubes find no room, those with this share of their voxels along a side are tried, down to the last. A surface's
-/// samples become fewer with the square of it until there is about one for each triangle and LDI: that takes an eighth.
+/// Where cubes find no room, those with this share of their voxels along a side are tried, down to the last. A
+/// surface's samples become fewer with the square of it until there is about one for each triangle and LDI: that takes
+/// an eighth.
 constexpr float kCoarser = 0.75f, kCoarsest = 0.1f;
 
 float longest_side(const Assembly::Body& body) {
@@ -92,8 +93,7 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
     float largest = 1e-30f;
     for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
     const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
-    const float n =
-        choice.ldc == 0 ? kPlanarResolution * choice.fineness : float(round_resolution(choice.ldc));
+    const float n = choice.ldc == 0 ? kPlanarResolution * choice.fineness : float(round_resolution(choice.ldc));
     std::vector<uint32_t> resolutions;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];

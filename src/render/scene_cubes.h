@@ -69,8 +69,8 @@ class SceneCubes {
         std::string no_room;
         uint32_t no_room_resolution = 0;
         HitTest no_room_hit = HitTest::exact;
-        LdcCounters counts{};     ///< of all bodies; longest: the longest list of all
-        uint64_t bytes = 0;       ///< of the tables in use
+        LdcCounters counts{};  ///< of all bodies; longest: the longest list of all
+        uint64_t bytes = 0;    ///< of the tables in use
         uint64_t scratch_bytes = 0;
         uint32_t redone = 0;  ///< how often a build did not fit and was done again
     };

@@ -27,8 +27,9 @@ void LdcTracer::make_smaller(const NoRoom& error) {
     const CubeChoice failed = choice();
     if (no_room_.empty()) no_room_ = error.reason();
     if (const std::optional<CubeChoice> smaller = smaller_than(failed)) return make(*smaller);
-    const std::string found = fmt::format("{} ({} hits, N = {})", error.reason(), name_of(failed.hit),
-                                          largest_resolution(assembly_, failed, fixed_bodies_));
+    const std::string found = fmt::format("{}, for {} hits at N = {}{}", no_room_, name_of(first_choice_.hit),
+                                          largest_resolution(assembly_, first_choice_, fixed_bodies_),
+                                          failed == first_choice_ ? "" : ", and for what is smaller");
     if (failed.ldc != 0) fail("{}: use {} auto, which takes what fits, or a smaller one", found, setting::ldc);
     if (failed.hit == HitTest::exact) fail("{}: use {} auto, which takes what fits", found, setting::hit);
     fail("{}: choose another {}, or {} reference, which renders without one", found, setting::device, setting::tracer);
