@@ -130,6 +130,7 @@ void Renderer::Impl::prepare(const RenderSettings& settings) {
 void Renderer::Impl::prepare_tracer() {
     f.settings.cubes = choose_automatically(triangles_of(assembly), f.settings);
     TracerChoice choice = f.settings;
+    if (choice.tracer == Tracer::khr) f.device.check_ray_tracing();
     if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings)) choice.tracer = Tracer::none;
     if (!f.tracer || made_for != choice) {
         f.tracer.reset();  // first, so that both never live at once
