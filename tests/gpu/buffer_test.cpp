@@ -30,11 +30,8 @@ TEST(SmallDevice, BindsAndHoldsNoMoreThanItIsTold) {
     EXPECT_EQ(device.limits().maxStorageBufferRange, 1u << 20);
     EXPECT_THROW(Buffer(device, "too large", (1 << 20) + 1), NoRoom);
     const Buffer first(device, "first", 1 << 20), second(device, "second", 1 << 20);
-    EXPECT_THROW(
-        {
-            const Buffer pair[] = {Buffer(device, "third", 1 << 20), Buffer(device, "fourth", 1 << 20)};
-        },
-        NoRoom);
+    const auto two_more = [&] { const Buffer one(device, "third", 1 << 20), other(device, "fourth", 1 << 20); };
+    EXPECT_THROW(two_more(), NoRoom);
     const Buffer third(device, "third", 1 << 19);  // what was freed is free again
     EXPECT_TRUE(third);
 }
