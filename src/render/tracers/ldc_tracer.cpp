@@ -30,7 +30,11 @@ void LdcTracer::make_smaller(const NoRoom& error) {
     const std::string found = fmt::format("{}, for {} hits at N = {}{}", no_room_, name_of(first_choice_.hit),
                                           largest_resolution(assembly_, first_choice_, fixed_bodies_),
                                           failed == first_choice_ ? "" : ", and for what is smaller");
-    if (failed.ldc != 0) fail("{}: use {} auto, which takes what fits, or a smaller one", found, setting::ldc);
+    // The corners of the triangles are as many at any resolution.
+    const bool coarser_helps = failed.hit != HitTest::exact || !cubes_->cubes().has_patches() ||
+                               triangles_.count <= most_exact_triangles(device_);
+    if (failed.ldc != 0 && coarser_helps)
+        fail("{}: use {} auto, which takes what fits, or a smaller one", found, setting::ldc);
     if (failed.hit == HitTest::exact) fail("{}: use {} auto, which takes what fits", found, setting::hit);
     fail("{}: choose another {}, or {} reference, which renders without one", found, setting::device, setting::tracer);
 }
