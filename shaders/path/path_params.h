@@ -45,12 +45,14 @@ SHARED_SIZE(PathBranches, 32);
 #define QUEUE_LEVELS 17u
 #define QUEUE_REFLECTION 17u
 #define QUEUE_REFRACTION 18u
-#define QUEUE_LIGHT 19u        // shadow rays, those of the sky's light included
-#define QUEUE_AMBIENT 20u      // of them: the sky's
-#define QUEUE_OVERFLOW 21u     // OVERFLOW_*: what did not fit; the band is then rendered again
-#define QUEUE_VIEW_BLOCKS 22u  // of large triangles
-#define QUEUE_FINISHED 23u     // workgroups of the pass that runs
-#define QUEUE_COUNTERS 24u
+#define QUEUE_LIGHT 19u           // shadow rays, those of the sky's light included
+#define QUEUE_AMBIENT 20u         // of them: the sky's
+#define QUEUE_OVERFLOW 21u        // OVERFLOW_*: what did not fit; the band is then rendered again
+#define QUEUE_VIEW_BLOCKS 22u     // of large triangles
+#define QUEUE_FINISHED 23u        // workgroups of the pass that runs
+#define QUEUE_CUT_REFLECTION 24u  // rays that are not traced because the last level is reached
+#define QUEUE_CUT_REFRACTION 25u
+#define QUEUE_COUNTERS 26u
 /// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u

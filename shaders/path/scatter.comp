@@ -40,6 +40,7 @@ BUFFER(readonly, 27, vec4, split_sum)
 #include "common/last_group.glsl"
 
 shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
+shared uint group_cut[2];     // reflection, refraction that the last level cuts off
 shared uint group_first;
 shared uint group_first_light;
 
@@ -65,6 +66,12 @@ float tracedPart(GpuMaterial m) {
 void decide(inout Branch branch, vec3 path_weight, uint effect) {
     branch.traced = (frame[0].effects & effect) != 0u && params.level < frame[0].last_level &&
                     largest(branch.weight * path_weight) >= LEAST_WEIGHT;
+}
+
+/// Would it be traced if this level were not the last? With --bounces 0 nobody asked for it.
+bool isCut(Branch branch, vec3 path_weight, uint effect) {
+    return params.level > 0u && params.level == frame[0].last_level && (frame[0].effects & effect) != 0u &&
+           largest(branch.weight * path_weight) >= LEAST_WEIGHT;
 }
 
 void emitRay(uint index, Branch branch, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
@@ -149,6 +156,8 @@ void reserve() {
         if (group_counts[1] > 0u) atomicAdd(queue[QUEUE_REFRACTION], group_counts[1]);
         if (group_first + rays > params.next_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_PATHS);
     }
+    if (group_cut[0] > 0u) atomicAdd(queue[QUEUE_CUT_REFLECTION], group_cut[0]);
+    if (group_cut[1] > 0u) atomicAdd(queue[QUEUE_CUT_REFRACTION], group_cut[1]);
     if (group_counts[2] > 0u) {
         group_first_light = atomicAdd(queue[QUEUE_LIGHT], group_counts[2]);
         if (group_counts[3] > 0u) atomicAdd(queue[QUEUE_AMBIENT], group_counts[3]);
@@ -209,6 +218,8 @@ void shadeHit(Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     else
         c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
+    if (isCut(c.reflection, c.path_weight, EFFECT_REFLECTION)) atomicAdd(group_cut[0], 1u);
+    if (isCut(c.refraction, c.path_weight, EFFECT_REFRACTION)) atomicAdd(group_cut[1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
@@ -232,6 +243,7 @@ void emitBranches(uint i, Scattering c, uint seed) {
 void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
     if (lane < 4u) group_counts[lane] = 0u;
+    if (lane < 2u) group_cut[lane] = 0u;
     barrier();
     Ray ray;
     RayState state;

@@ -34,6 +34,19 @@ class Error : public std::runtime_error {
     std::vector<std::string> settings_;
 };
 
+/// A device that binds or holds less than is needed: less of it may work. Whoever can do with less catches this one.
+class NoRoom : public Error {
+  public:
+    /// `reason`: what does not fit; `advice`: what to do about it.
+    NoRoom(const std::string& reason, const std::string& advice) : Error(reason + ": " + advice), reason_(reason) {}
+
+    /// Without what to do.
+    const std::string& reason() const { return reason_; }
+
+  private:
+    std::string reason_;
+};
+
 /// Throws Error with a formatted line. Arguments that are a Setting are those at fault.
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {

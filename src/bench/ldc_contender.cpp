@@ -24,7 +24,7 @@ LdcContender::LdcContender(Device& device, ClockProbe& probe, const Scene& scene
       cubes_(dynamic_cast<const LdcTracer&>(scene_.tracer()).cubes()) {
     const std::vector<LdcBody> bodies = scene_.stats(commands_).bodies;
     const std::vector<GpuTransform> transforms = transforms_of(assembly.instances, moment.worlds);
-    if (choice.hit != HitTest::exact) voxels_.resize(assembly.shown);
+    if (cubes_.choice().hit != HitTest::exact) voxels_.resize(assembly.shown);
     for (size_t i = 0; i < assembly.instances.size(); i++) {
         const Assembly::Instance& instance = assembly.instances[i];
         const glm::mat3& m = transforms[i].linear;

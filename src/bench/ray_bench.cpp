@@ -136,7 +136,7 @@ void MeasuredScene::measure_ours(const Way& way, bool frame, RayRow& row) {
     const RenderSettings settings = settings_of_way(way);
     {
         LdcContender cubes(device_, probe_, scene_.scene(), scene_.moment(), assembly_,
-                           choose_automatically(device_, uint32_t(scene_.triangles()), settings));
+                           choose_automatically(uint32_t(scene_.triangles()), settings));
         measure(cubes, cubes.stats().resolution, row);
     }
     if (!frame) return;

@@ -86,12 +86,7 @@ MadePicture Run::make(uint32_t frame, const std::function<void(double)>& progres
 void Run::count(uint32_t frame, MadePicture& made) {
     done_++;
     device_ = made.stats.machine.name;
-    const RayCounts& rays = made.picture.rays;
-    rays_.primary += rays.primary;
-    rays_.reflection += rays.reflection;
-    rays_.refraction += rays.refraction;
-    rays_.shadow += rays.shadow;
-    rays_.ambient += rays.ambient;
+    rays_ += made.picture.rays;
     frame_ms_ += made.stats.render.frame_ms;
     build_ms_ += made.stats.render.build_ms;
     if (!arguments_.stats.empty()) frames_.push_back({frame, sequence_.shot(frame), std::move(made.stats)});

@@ -74,9 +74,13 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
         {"triangles_without_area", cubes.counts.degenerate},
         {"triangles_not_finite", cubes.counts.invalid},
         {"count", cubes.cubes()},
-        {"bare_bodies", cubes.bare}};
+        {"bare_bodies", cubes.bare},
+        {"no_room", nullptr}};
     // What the boxes of cubes are relative to.
     if (origin != glm::dvec3(0)) json["origin"] = {origin.x, origin.y, origin.z};
+    if (!cubes.no_room.empty())
+        json["no_room"] = {
+            {"n", cubes.no_room_resolution}, {"hit", name_of(cubes.no_room_hit)}, {"why", cubes.no_room}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);
@@ -141,7 +145,8 @@ Json rays_json(const RayCounts& rays) {
             {"reflection", rays.reflection},
             {"refraction", rays.refraction},
             {"shadow", rays.shadow},
-            {"ambient", rays.ambient}};
+            {"ambient", rays.ambient},
+            {"cut", {{"reflection", rays.cut_reflection}, {"refraction", rays.cut_refraction}}}};
 }
 
 static Json maps_json(const RenderStats& stats) {

@@ -37,7 +37,8 @@ Traced trace_rays(Device& device, RayScene& scene, const std::vector<RayRecord>&
     Traced result;
     const MemoryPart part(device, "rays");
     Commands commands(device);
-    const size_t batch = std::min<size_t>(std::max<size_t>(rays.size(), 1), 2u << 20);
+    const size_t most = std::min<size_t>(2u << 20, device.limits().maxStorageBufferRange / sizeof(Ray));
+    const size_t batch = std::min(std::max<size_t>(rays.size(), 1), most);
     Buffer ray_buffer(device, "rays", batch * sizeof(Ray)), hit_buffer(device, "hits", batch * sizeof(FileHit));
     // What is counted is counted in every repetition, and of the last one it stays.
     const bool counts = result.counted = !a.counters.empty();
@@ -90,8 +91,8 @@ std::vector<RayRecord> in_scene(std::vector<RayRecord> rays, const glm::dvec3& o
     return rays;
 }
 
-TraceStats trace_stats(Device& device, const Geometry& geometry, const TracerChoice& choice,
-                       const TracerStats& traced_in, const FrameMeter& build, const Traced& traced, bool any_hit) {
+TraceStats trace_stats(Device& device, const Geometry& geometry, Tracer tracer, const TracerStats& traced_in,
+                       const FrameMeter& build, const Traced& traced, bool any_hit) {
     TraceStats stats;
     stats.machine = machine_of(device);
     stats.triangles = geometry.triangles.size();
@@ -102,12 +103,12 @@ TraceStats trace_stats(Device& device, const Geometry& geometry, const TracerCho
     stats.build_passes = build.passes.rows();
     stats.trace_ms = traced.trace_ms;
     if (traced.counted) stats.costs = traced.sums;
-    stats.choice = choice.cubes;
-    if (choice.tracer == Tracer::khr) {
+    if (tracer == Tracer::khr) {
         stats.structures = traced_in.structures;
         return stats;
     }
     stats.cubes = traced_in.cubes;
+    stats.choice = traced_in.cubes.choice;
     stats.bodies = traced_in.bodies;
     stats.shown = traced_in.shown;
     stats.box = {geometry.lower, geometry.upper};
@@ -141,7 +142,7 @@ void run_trace(const TraceArguments& a) {
     settings.structures = StructureUpdate::keep;
 
     Device device({a.device.device, a.device.validate});
-    settings.cubes = choose_automatically(device, uint32_t(geometry.triangles.size()), settings);
+    settings.cubes = choose_automatically(uint32_t(geometry.triangles.size()), settings);
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");
         return RayScene(device, scene, rest, assemble(scene, rest, motion_of(scene, "")), settings);
@@ -152,13 +153,15 @@ void run_trace(const TraceArguments& a) {
     const TracerStats traced_in = traced_scene.stats(commands);
     const bool by_khr = settings.tracer == Tracer::khr;
     if (!by_khr) {
-        const std::string note = tolerance_note(traced_in.bodies, settings.cubes);
-        if (!note.empty()) print_note(note);
+        for (const std::string& note :
+             {room_note(traced_in.cubes), tolerance_note(traced_in.bodies, traced_in.cubes.choice)})
+            if (!note.empty()) print_note(note);
     }
     write_hits(a.hits, traced.hits);
     if (!a.counters.empty()) write_costs(a.counters, traced.costs);
     if (!a.stats.empty()) {
-        TraceStats stats = trace_stats(device, geometry, settings, traced_in, traced_scene.build(), traced, a.any_hit);
+        TraceStats stats =
+            trace_stats(device, geometry, settings.tracer, traced_in, traced_scene.build(), traced, a.any_hit);
         stats.origin = scene.origin;
         write_json(a.stats, trace_json(stats));
     }
@@ -167,7 +170,7 @@ void run_trace(const TraceArguments& a) {
     if (by_khr)
         fmt::print(", {}", counted("{} acceleration structure{|s}", traced_in.structures.bodies));
     else
-        fmt::print(" ({}), {}", name_of(settings.cubes.hit), count_of_cubes(traced_in.cubes));
+        fmt::print(" ({}), {}", name_of(traced_in.cubes.choice.hit), count_of_cubes(traced_in.cubes));
     if (device.timestamp_period() > 0)
         fmt::print("; on the GPU: {} {:.2f} ms, rays {:.2f} ms", by_khr ? "structures" : "cubes",
                    traced_scene.build().ms, traced.trace_ms);

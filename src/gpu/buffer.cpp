@@ -9,12 +9,11 @@ namespace peelray {
 
 Buffer::Buffer(Device& device, std::string name, uint64_t bytes, Where where)
     : device_(&device), name_(std::move(name)), bytes_(std::max<uint64_t>(bytes, 16)) {
-    if (where == Where::device && bytes_ > device.limits().maxStorageBufferRange)
-        fail(
-            "{} needs {:.0f} MiB, but the device '{}' binds at most {:.0f} MiB at once: use a smaller {} or {}, or "
-            "another {}",
-            name_, double(bytes_) / (1 << 20), device.info().name,
-            double(device.limits().maxStorageBufferRange) / (1 << 20), setting::ldc, setting::size, setting::device);
+    const uint64_t most = device.limits().maxStorageBufferRange;
+    if (where == Where::device && bytes_ > most)
+        throw NoRoom(fmt::format("{:.0f} MiB of {} are more than the device '{}' binds at once ({:.0f} MiB)",
+                                 double(bytes_) / (1 << 20), name_, device.info().name, double(most) / (1 << 20)),
+                     device.room_advice());
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes_;
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;

@@ -21,7 +21,7 @@ class Buffer {
     };
 
     Buffer() = default;
-    /// `bytes` may be 0 (a buffer always has room for 16). Throws Error beyond the device's limits or memory; `name`
+    /// `bytes` may be 0 (a buffer always has room for 16). Throws NoRoom beyond the device's limits or memory; `name`
     /// says what it is for.
     Buffer(Device& device, std::string name, uint64_t bytes, Where where = Where::device);
     ~Buffer() { reset(); }

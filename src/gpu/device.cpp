@@ -2,6 +2,7 @@
 #include "gpu/device.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 
@@ -32,6 +33,12 @@ struct Device::State {
 };
 
 namespace {
+
+/// A number of bytes from the environment; 0: none.
+uint64_t bytes_from(const char* variable) {
+    const char* text = std::getenv(variable);
+    return text ? std::strtoull(text, nullptr, 10) : 0;
+}
 
 /// Triangles are snapped to 1/256 pixel or so first: growing by less could lose a pixel.
 constexpr float kLeastOverestimation = 1.0f / 64;
@@ -84,8 +91,9 @@ void check_vulkan(VkResult result, std::string_view what) {
         fail("the Vulkan device was lost while {}: the driver gave up; try a smaller {} or {}, or another {}", what,
              setting::size, setting::ldc, setting::device);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        fail("out of memory while {}: try a smaller {} or {}, or another {}", what, setting::size, setting::ldc,
-             setting::device);
+        throw NoRoom(
+            fmt::format("out of memory while {}", what),
+            fmt::format("choose a smaller {} or {}, or another {}", setting::size, setting::ldc, setting::device));
     fail("Vulkan error {} while {}", int(result), what);
 }
 
@@ -114,6 +122,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
             check_vulkan(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
                          "watching the validation layers");
         create_logical(options.validate);
+        lower_limits(options);
     } catch (...) {
         if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
         vkDestroyInstance(instance_, nullptr);
@@ -169,6 +178,15 @@ void Device::create_logical(bool validate) {
     create_dummy();
     // With validation on, shaders are compiled afresh, so that the layers see every pipeline being made.
     state_->cache = std::make_unique<PipelineCache>(*this, !validate);
+}
+
+void Device::lower_limits(const DeviceOptions& options) {
+    const auto lowered = [](uint64_t own, uint64_t option, uint64_t variable) {
+        return std::min(own, option > 0 ? option : variable > 0 ? variable : own);
+    };
+    uint32_t& bound = properties_.limits.maxStorageBufferRange;
+    bound = uint32_t(lowered(bound, options.most_bound, bytes_from("PEELRAY_MOST_BOUND")));
+    most_held_ = lowered(~0ull, options.most_held, bytes_from("PEELRAY_MOST_HELD"));
 }
 
 Device::~Device() {
@@ -250,7 +268,18 @@ VkDeviceMemory Device::allocate_uncounted(const VkMemoryRequirements& needs, VkM
 
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
                                 VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
-    const VkDeviceMemory memory = allocate_uncounted(needs, wanted, nice, what, addressed);
+    const auto no_room = [&] {
+        return NoRoom(fmt::format("the memory of the device '{}' has no room for another {:.0f} MiB, {}", info_.name,
+                                  double(needs.size) / (1 << 20), what),
+                      room_advice());
+    };
+    if (needs.size > most_held_ - std::min(allocated_, most_held_)) throw no_room();
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    try {
+        memory = allocate_uncounted(needs, wanted, nice, what, addressed);
+    } catch (const NoRoom&) {
+        throw no_room();
+    }
     allocated_ += needs.size;
     held_.push_back({memory, {part_, std::string(what), needs.size}});
     if (allocated_ > peak_allocated_) reset_peak();
@@ -261,6 +290,16 @@ void Device::release(VkDeviceMemory memory, uint64_t size) {
     vk.vkFreeMemory(handle, memory, nullptr);
     allocated_ -= size;
     std::erase_if(held_, [&](const auto& entry) { return entry.first == memory; });
+}
+
+std::string Device::room_advice() const {
+    const std::string_view part = part_;
+    if (part == "frame" || part == "images")
+        return fmt::format("choose a smaller {}, or another {}", setting::size, setting::device);
+    if (part == "cubes" || part == "build scratch")
+        return fmt::format("use a smaller {}, or another {}", setting::ldc, setting::device);
+    return fmt::format("choose another {}, or {} reference, which renders without one", setting::device,
+                       setting::tracer);
 }
 
 std::vector<Allocation> Device::allocations() const {

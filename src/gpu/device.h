@@ -36,6 +36,9 @@ struct DeviceOptions {
     std::string select;     ///< index or part of the name (case-insensitive); empty: the first of discrete, integrated,
                             ///< virtual, CPU
     bool validate = false;  ///< Vulkan validation layers; every message is collected (Device::validation_messages)
+    /// For tests of what happens at the limits of a device: it is taken to bind, and to hold, only so many bytes; 0: as
+    /// many as it does. PEELRAY_MOST_BOUND and PEELRAY_MOST_HELD in the environment set them for whole programs.
+    uint64_t most_bound = 0, most_held = 0;
 };
 
 /// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
@@ -111,6 +114,8 @@ class Device {
     /// Each piece of it, in the order in which they were made: what is held now, and what was at the peak.
     std::vector<Allocation> allocations() const;
     const std::vector<Allocation>& peak_allocations() const { return at_peak_; }
+    /// What to do where there is no room for what is being made: it depends on the part of the program.
+    std::string room_advice() const;
     /// Starts counting the peak again from what is allocated now.
     void reset_peak();
 
@@ -136,6 +141,7 @@ class Device {
     friend class MemoryPart;
     struct State;
     void create_logical(bool validate);
+    void lower_limits(const DeviceOptions& options);
     void create_dummy();
     VkDeviceMemory allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
                                       VkMemoryPropertyFlags nice, std::string_view what, bool addressed);
@@ -154,7 +160,7 @@ class Device {
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     std::vector<std::string> validation_messages_;
-    uint64_t allocated_ = 0, peak_allocated_ = 0;
+    uint64_t allocated_ = 0, peak_allocated_ = 0, most_held_ = ~0ull;
     std::vector<std::pair<VkDeviceMemory, Allocation>> held_;
     std::vector<Allocation> at_peak_;
     const char* part_ = "other";
@@ -174,7 +180,7 @@ class MemoryPart {
     const char* outer_;
 };
 
-/// Throws Error naming `what` unless `result` is VK_SUCCESS.
+/// Throws Error naming `what` unless `result` is VK_SUCCESS; NoRoom where memory ran out.
 void check_vulkan(VkResult result, std::string_view what);
 
 }  // namespace peelray

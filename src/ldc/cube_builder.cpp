@@ -123,8 +123,9 @@ bool CubeBuilder::finish(Commands& commands) {
             "{} two-level",
             LDC_FARTHEST_BY_VOXEL, setting::traversal, setting::tolerance, setting::ldc, setting::traversal);
     if (counts_.wrapped)
-        fail("the cubes would hold more than 2^32 {}: use a smaller {}",
-             counts_.wrapped & LDC_WRAPPED_CELLS ? "pixels or cells" : "samples", setting::ldc);
+        throw NoRoom(fmt::format("the cubes would hold more than 2^32 {}",
+                                 counts_.wrapped & LDC_WRAPPED_CELLS ? "pixels or cells" : "samples"),
+                     fmt::format("use a smaller {}", setting::ldc));
     bool grown = rasterizer_->grow(*state_, counts_);
     grown |= order_->grow(*state_, counts_);
     const DeviceInfo& device = state_->device.info();

@@ -35,7 +35,8 @@ class CubeBuilder {
     void record(Commands& commands, const TriangleBuffers& triangles);
 
     /// After the submission: true if everything fitted. Otherwise the buffers have grown and the frame must be recorded
-    /// again. Throws Error where a software device cannot sort what crowds into one list.
+    /// again. Throws Error where a software device cannot sort what crowds into one list, NoRoom where the device does
+    /// not bind or hold what it takes: then the builder and its cubes are of no use any more.
     bool finish(Commands& commands);
 
     /// record, submit and finish until it fits.

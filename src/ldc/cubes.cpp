@@ -33,20 +33,20 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
 
 void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& kept) {
     // Entries are 31-bit numbers of nodes and samples.
-    if (size.cells >= 1ull << 32)
-        fail("the cubes would hold {} pixels or cells, more than their tables can number: use a smaller {}", size.cells,
-             setting::ldc);
-    if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
-        fail("the cubes would hold {} nodes and {} samples, more than their tables can number: use a smaller {}",
-             size.nodes, size.samples, setting::ldc);
     const MemoryPart part(device_, "cubes");
+    if (size.cells >= 1ull << 32)
+        throw NoRoom(fmt::format("{} pixels or cells are more than the cubes' tables can number", size.cells),
+                     device_.room_advice());
+    if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
+        throw NoRoom(
+            fmt::format("{} nodes and {} samples are more than the cubes' tables can number", size.nodes, size.samples),
+            device_.room_advice());
     if (has_patches()) {
         const uint64_t triangles = uint64_t(bodies().back().first_triangle) + bodies().back().triangles;
         if (triangles > most_exact_triangles(device_))
-            fail(
-                "{} triangles are more than the device '{}' holds for exact hits by voxel ({}): use {} planar, or {} "
-                "two-level",
-                triangles, device_.info().name, most_exact_triangles(device_), setting::hit, setting::traversal);
+            throw NoRoom(fmt::format("{} triangles are more than the device '{}' holds for exact hits by voxel ({})",
+                                     triangles, device_.info().name, most_exact_triangles(device_)),
+                         fmt::format("use {} auto", setting::hit));
         if (!corners) corners = Buffer(device_, "the cubes' corners of triangles", triangles * sizeof(LdcCorners));
         grow(device_, commands, patches, "the cubes' patches", size.samples * 16, kept.samples * 16);
     } else {
@@ -69,7 +69,13 @@ void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& 
 void Cubes::trim(const TableSize& size) {
     const MemoryPart part(device_, "cubes");
     Commands commands(device_);  // of its own: the builder's hold the times of the build
-    const auto to = [&](Buffer& buffer, uint64_t bytes) { shrink(device_, commands, buffer, bytes); };
+    const auto to = [&](Buffer& buffer, uint64_t bytes) {
+        try {
+            shrink(device_, commands, buffer, bytes);
+        } catch (const NoRoom&) {
+            // A moment long both must live: then the larger one stays.
+        }
+    };
     to(samples, size.samples * 8);
     to(sample_ids, size.samples * 4);
     to(patches, size.samples * 16);

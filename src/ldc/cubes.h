@@ -84,7 +84,8 @@ class Cubes {
     /// Levels of the min/max pyramid over the pixels of the largest LDI.
     uint32_t pyramid_levels() const;
 
-    /// Makes room for `size` in all; what the first `kept` entries of each table hold stays.
+    /// Makes room for `size` in all; what the first `kept` entries of each table hold stays. Throws NoRoom where the
+    /// device has too little.
     void reserve(Commands& commands, const TableSize& size, const TableSize& kept);
 
     /// Gives back what the tables have room for beyond `size`, which is what they hold.

@@ -31,7 +31,13 @@ void GltfLoader::choose_variant(const std::string& name) {
 }
 
 void GltfLoader::write_notes() {
-    for (const auto& [sentence, count] : file.ignored()) ignored[sentence] += count;
+    if (damaged_images.size() == 1)
+        scene.notes.push_back(fmt::format("{} (the factor is used)", damaged_images.begin()->second));
+    if (damaged_images.size() > 1)
+        scene.notes.push_back(fmt::format("{} images are damaged, the factors are used: the first is {}",
+                                          damaged_images.size(), damaged_images.begin()->second));
+    for (const Tally* tally : {&file.ignored(), &file.faults()})
+        for (const auto& [sentence, count] : *tally) ignored[sentence] += count;
     for (const auto& [sentence, count] : ignored) scene.notes.push_back(counted(sentence, count));
 }
 

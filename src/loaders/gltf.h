@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "loaders/gltf_check.h"
 #include "loaders/gltf_file.h"
 #include "loaders/load.h"
 #include "scene/origin.h"
@@ -33,6 +34,7 @@ struct GltfLoader {
     std::optional<size_t> variant;                               ///< that which chooses the primitives' materials
     float point_size = 0;                                        ///< LoadOptions::point_size
     std::map<uint32_t, uint32_t> unlit_copies;                   ///< of materials, by those
+    std::map<int, std::string> damaged_images;                   ///< and what is wrong with them
     uint64_t triangles = 0;                                      ///< in all primitives read so far
     std::vector<ExactNode> exact_nodes;                          ///< of all nodes
 

@@ -5,6 +5,7 @@
 #include <climits>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,9 @@ constexpr std::array supported_extensions = std::to_array<std::string_view>(
      "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
      "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume",
      "KHR_node_visibility", "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
+
+/// Half of pi, and what rounding may add to it.
+constexpr double kRightAngle = 1.5707964;
 
 enum class Kind {
     flag,
@@ -49,7 +53,8 @@ struct Member {
     const char* list = "";             ///< index…: the list that is pointed into
     size_t length = 0;                 ///< numbers: how many
     bool required = false;
-    json missing = nullptr;  ///< what stands for a missing one; null: nothing
+    json missing = nullptr;                     ///< what stands for a missing one; null: nothing
+    double least = -INFINITY, most = INFINITY;  ///< number, numbers: the format's range
 };
 using Members = std::vector<Member>;
 
@@ -102,6 +107,12 @@ Member required(Member member) {
 }
 Member or_else(Member member, json missing) {
     member.missing = std::move(missing);
+    return member;
+}
+
+Member within(double least, double most, Member member) {
+    member.least = least;
+    member.most = most;
     return member;
 }
 
@@ -165,22 +176,25 @@ Members material_members() {
         text("alphaMode"),
         number("alphaCutoff"),
         flag("doubleSided"),
-        numbers("emissiveFactor", 3),
+        within(0, 1, numbers("emissiveFactor", 3)),
         texture("normalTexture"),
         texture("occlusionTexture"),
         texture("emissiveTexture"),
-        object("pbrMetallicRoughness",
-               {numbers("baseColorFactor", 4), number("metallicFactor"), number("roughnessFactor"),
-                texture("baseColorTexture"), texture("metallicRoughnessTexture")}),
+        object("pbrMetallicRoughness", {within(0, 1, numbers("baseColorFactor", 4)),
+                                        within(0, 1, number("metallicFactor")), within(0, 1, number("roughnessFactor")),
+                                        texture("baseColorTexture"), texture("metallicRoughnessTexture")}),
         object("extensions",
-               {object("KHR_materials_emissive_strength", {number("emissiveStrength")}),
-                object("KHR_materials_ior", {number("ior")}),
-                object("KHR_materials_specular", {number("specularFactor"), texture("specularTexture"),
-                                                  numbers("specularColorFactor", 3), texture("specularColorTexture")}),
-                object("KHR_materials_transmission", {number("transmissionFactor"), texture("transmissionTexture")}),
+               {object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
+                object("KHR_materials_ior", {within(0, INFINITY, number("ior"))}),
+                object("KHR_materials_specular",
+                       {within(0, 1, number("specularFactor")), texture("specularTexture"),
+                        within(0, INFINITY, numbers("specularColorFactor", 3)), texture("specularColorTexture")}),
+                object("KHR_materials_transmission",
+                       {within(0, 1, number("transmissionFactor")), texture("transmissionTexture")}),
                 object("KHR_materials_unlit", {}),
-                object("KHR_materials_volume", {number("thicknessFactor"), texture("thicknessTexture"),
-                                                numbers("attenuationColor", 3), number("attenuationDistance")})})};
+                object("KHR_materials_volume",
+                       {within(0, INFINITY, number("thicknessFactor")), texture("thicknessTexture"),
+                        within(0, 1, numbers("attenuationColor", 3)), number("attenuationDistance")})})};
 }
 
 /// What the loader reads of a file. What is not listed never reaches tinygltf.
@@ -215,13 +229,15 @@ Members file_members(size_t view_without_bytes, size_t no_node) {
                             object("perspective", {required(number("yfov")), or_else(number("znear"), 0.1)}),
                             object("orthographic", {or_else(number("xmag"), 1.0), or_else(number("ymag"), 0.0),
                                                     or_else(number("zfar"), 1.0), or_else(number("znear"), 0.0)})}),
-        object("extensions",
-               {object("KHR_materials_variants", {objects("variants", {required(text("name"))})}),
-                object("KHR_lights_punctual",
-                       {objects("lights", {text("name"), required(text("type")), numbers("color", 3),
-                                           number("intensity"), number("range"),
-                                           or_else(object("spot", {number("innerConeAngle"), number("outerConeAngle")}),
-                                                   json::object())})})})};
+        object(
+            "extensions",
+            {object("KHR_materials_variants", {objects("variants", {required(text("name"))})}),
+             object("KHR_lights_punctual",
+                    {objects("lights", {text("name"), required(text("type")), within(0, 1, numbers("color", 3)),
+                                        within(0, INFINITY, number("intensity")), within(0, INFINITY, number("range")),
+                                        or_else(object("spot", {within(0, kRightAngle, number("innerConeAngle")),
+                                                                within(0, kRightAngle, number("outerConeAngle"))}),
+                                                json::object())})})})};
 }
 
 const json* find(const json& value, const char* key) {
@@ -235,7 +251,7 @@ size_t length_of(const json* list) {
 
 class Checker {
   public:
-    explicit Checker(const json& root) {
+    Checker(const json& root, Tally& faults) : faults_(faults) {
         for (const auto& [key, value] : root.items()) lengths_[key] = length_of(&value);
         const json* extensions = find(root, "extensions");
         const json* lights = extensions ? find(*extensions, "KHR_lights_punctual") : nullptr;
@@ -244,7 +260,7 @@ class Checker {
         lengths_["variants"] = length_of(variants ? find(*variants, "variants") : nullptr);
     }
 
-    json object(const json& in, const Members& members, const std::string& where) const {
+    json object(const json& in, const Members& members, const std::string& where) {
         expect(in.is_object(), in, where, "an object");
         json out = json::object();
         for (const Member& member : members) {
@@ -259,7 +275,7 @@ class Checker {
     }
 
   private:
-    json checked(const json& in, const Member& member, const std::string& where) const {
+    json checked(const json& in, const Member& member, const std::string& where) {
         switch (member.kind) {
             case Kind::flag:
                 expect(in.is_boolean(), in, where, "true or false");
@@ -273,12 +289,12 @@ class Checker {
                     return element;
                 });
             case Kind::number:
-                return number(in, where);
+                return ranged(number(in, where), member);
             case Kind::numbers:
                 expect(in.is_array(), in, where, "an array");
                 if (member.length && in.size() != member.length)
                     fail("{}: has {} numbers, needs {}", where, in.size(), member.length);
-                return each(in, where, [&](const json& element) { return number(element, where); });
+                return each(in, where, [&](const json& element) { return ranged(number(element, where), member); });
             case Kind::whole:
                 return whole(in, where, INT_MAX);
             case Kind::whole_map:
@@ -333,6 +349,14 @@ class Checker {
         return static_cast<uint64_t>(value);
     }
 
+    json ranged(const json& value, const Member& member) {
+        const auto number = value.get<double>();
+        if (number < member.least || number > member.most)
+            ++faults_[fmt::format("{{}} value{{|s}} of {} out of {{its|their}} range (VALUE_NOT_IN_RANGE)",
+                                  member.key)];
+        return value;
+    }
+
     /// "mesh" or "meshes", "buffer view" or "buffer views".
     static std::string words_for(const std::string& list, bool one) {
         const std::string words = list == "bufferViews" ? "buffer views" : list;
@@ -362,7 +386,37 @@ class Checker {
     }
 
     std::map<std::string, size_t> lengths_;
+    Tally& faults_;
 };
+
+/// Extensions that objects have and "extensionsUsed" does not name: those that are known are read all the same.
+void note_undeclared(const json& root, Tally& faults) {
+    std::set<std::string> declared, undeclared;
+    if (const json* list = find(root, "extensionsUsed"))
+        for (const json& element : *list)
+            if (element.is_string()) declared.insert(element.get<std::string>());
+    // A stack of our own: the depth of the file is its author's choice.
+    std::vector<const json*> todo = {&root};
+    while (!todo.empty()) {
+        const json& value = *todo.back();
+        todo.pop_back();
+        if (value.is_array())
+            for (const json& element : value) todo.push_back(&element);
+        if (!value.is_object()) continue;
+        for (const auto& [key, element] : value.items()) {
+            if (key != "extras") todo.push_back(&element);
+            if (key != "extensions" || !element.is_object()) continue;
+            for (const auto& [name, extension] : element.items())
+                if (!declared.contains(name)) undeclared.insert(name);
+        }
+    }
+    for (const std::string& name : undeclared) {
+        std::string plain = printable(name, 60);
+        std::erase_if(plain, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
+        ++faults[fmt::format("{{}} extension in use that extensionsUsed does not name, {}: {} (UNDECLARED_EXTENSION)",
+                             plain, is_supported_extension(name) ? "read all the same" : "without effect")];
+    }
+}
 
 void check_required_extensions(const json& root, const std::string& name) {
     const json* list = find(root, "extensionsRequired");
@@ -381,7 +435,7 @@ bool is_supported_extension(const std::string& name) {
     return std::find(supported_extensions.begin(), supported_extensions.end(), name) != supported_extensions.end();
 }
 
-json check_gltf(const json& root, const std::string& name) {
+json check_gltf(const json& root, const std::string& name, Tally& faults) {
     if (!root.is_object()) fail("{}: not a glTF file: its JSON is {}, must be an object", name, root.type_name());
     if (!root.contains("asset")) fail("{}: not a glTF file: it has no \"asset\"", name);
     const json* version = find(root["asset"], "version");
@@ -389,8 +443,10 @@ json check_gltf(const json& root, const std::string& name) {
         fail("{}: glTF version \"{}\" is not supported; convert it to glTF 2.0", name,
              printable(version->get<std::string>(), 20));
     check_required_extensions(root, name);  // before the parts whose gaps such an extension would explain
-    json out = Checker(root).object(
-        root, file_members(length_of(find(root, "bufferViews")), length_of(find(root, "nodes"))), name);
+    note_undeclared(root, faults);
+    json out =
+        Checker(root, faults)
+            .object(root, file_members(length_of(find(root, "bufferViews")), length_of(find(root, "nodes"))), name);
     out["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
     return out;
 }

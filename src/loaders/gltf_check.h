@@ -4,10 +4,14 @@
 // with its call stack, and its messages do not say where. So it gets only what is listed in gltf_check.cpp, checked.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace peelray {
+
+/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
+using Tally = std::map<std::string, size_t>;
 
 /// True for an extension that this loader understands.
 bool is_supported_extension(const std::string& name);
@@ -17,6 +21,9 @@ bool is_supported_extension(const std::string& name);
 ///
 /// An accessor without a buffer view gets one: tinygltf refuses the legal indices without. That view has no bytes
 /// behind it, and lies after the file's own ones.
-nlohmann::json check_gltf(const nlohmann::json& root, const std::string& name);
+///
+/// What is no reason to refuse the file is counted in `faults`, with the code that Khronos's validator has for it:
+/// numbers out of their range, which stay, and extensions that the file does not declare.
+nlohmann::json check_gltf(const nlohmann::json& root, const std::string& name, Tally& faults);
 
 }  // namespace peelray

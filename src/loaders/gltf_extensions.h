@@ -9,12 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "loaders/gltf_check.h"
 #include "loaders/meshopt.h"
 
 namespace peelray {
-
-/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
-using Tally = std::map<std::string, size_t>;
 
 /// KHR_draco_mesh_compression of a primitive.
 struct DracoSource {

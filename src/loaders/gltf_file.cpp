@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <set>
 
 #include "base/text.h"
 #include "loaders/gltf_check.h"
@@ -51,6 +52,11 @@ uint32_t load_index(const uint8_t* from, uint32_t type) {
                                                             : load_as<uint32_t>(from);
 }
 
+/// What stands for a camera of an unknown type, which is legal: one that shows nothing, see NodeReader::add_camera().
+json no_camera() {
+    return {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 1}}}};
+}
+
 void append_u32(Bytes& bytes, size_t value) {
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(value >> shift));
 }
@@ -73,22 +79,24 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     const Glb glb = is_glb ? split_glb(bytes) : Glb{bytes, {}};
     json checked;
     try {
-        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_);
+        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, faults_);
     } catch (const json::exception& error) {
         fail("{}: not a glTF file: {}", name_, printable(error.what(), 200));
     }
     for (const json& node : checked["nodes"])
-        nodes_placed_twice_ += node.contains("matrix") &&
-                               (node.contains("translation") || node.contains("rotation") || node.contains("scale"));
+        if (node.contains("matrix") &&
+            (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
+            ++faults_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
     extensions_ = take_extensions(checked);
     ignored_ = extensions_.ignored;
+    hide_unknown_types(checked);
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);
 }
 
 // tinygltf splits the container again, but only after we have looked: its own check of the binary chunk is 8 bytes off,
 // and the JSON has to be checked first.
-GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) const {
+GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) {
     if (all.size() < 20) fail("{}: truncated GLB: {} bytes, the headers need 20", name_, all.size());
     const auto u32 = [&](size_t offset) { return load_as<uint32_t>(all.data() + offset); };
     if (u32(4) != 2) fail("{}: GLB version {} is not supported; convert it to glTF 2.0", name_, u32(4));
@@ -96,8 +104,8 @@ GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) const {
     if (length > all.size())
         fail("{}: truncated GLB: the header says {} bytes, the file has {}", name_, length, all.size());
     Glb glb;
-    size_t chunks = 0;
-    for (size_t at = 12; at + 8 <= length; ++chunks) {
+    size_t chunks = 0, at = 12;
+    for (; at + 8 <= length; ++chunks) {
         const size_t size = u32(at), type = u32(at + 4);
         if (size > length - at - 8)
             fail("{}: truncated GLB: chunk {} says {} bytes, {} are left", name_, chunks, size, length - at - 8);
@@ -107,10 +115,33 @@ GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) const {
             glb.json = chunk;
         else if (type == binary_chunk && glb.binary.empty())
             glb.binary = chunk;
+        else if (type == binary_chunk || type == json_chunk)
+            ++faults_["{} chunk{|s} of the GLB beyond the first of their kind ignored (GLB_DUPLICATE_CHUNK)"];
+        if (type == binary_chunk && chunks > 1 && glb.binary.data() == chunk.data())
+            ++faults_["{} binary chunk{|s} that {is|are} not the second of the GLB used (GLB_UNEXPECTED_BIN_CHUNK)"];
         at += 8 + ((size + 3) & ~size_t(3));
     }
     if (chunks == 0) fail("{}: truncated GLB: no chunk", name_);
+    if (at < length)
+        ++faults_["{} GLB ends amid a chunk's header, which is ignored (GLB_UNEXPECTED_END_OF_CHUNK_HEADER)"];
     return glb;
+}
+
+// A later version's types are legal as long as nothing that is read uses them; tinygltf refuses them everywhere.
+void GltfFile::hide_unknown_types(json& checked) {
+    static const std::set<std::string> types = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+    static const std::set<size_t> components = {5120, 5121, 5122, 5123, 5125, 5126};
+    size_t i = 0;
+    for (json& accessor : checked["accessors"]) {
+        const std::string type = accessor["type"].get<std::string>();
+        const auto component = accessor["componentType"].get<size_t>();
+        if (!types.contains(type)) foreign_accessors_[i] = fmt::format("the type \"{}\"", printable(type, 20));
+        if (!components.contains(component)) foreign_accessors_[i] = fmt::format("the component type {}", component);
+        if (foreign_accessors_.contains(i)) accessor["type"] = "SCALAR", accessor["componentType"] = 5121;
+        ++i;
+    }
+    for (json& camera : checked["cameras"])
+        if (camera["type"] != "perspective" && camera["type"] != "orthographic") camera = no_camera();
 }
 
 // tinygltf undoes %XX wrongly, knows few kinds of data URIs, and wants buffers of exactly byteLength bytes. So it sees
@@ -274,9 +305,8 @@ GltfFile::Accessor GltfFile::accessor(int index) const {
     out.component_type = static_cast<uint32_t>(from.componentType);
     out.normalized = from.normalized;
     out.is_backed = size_t(from.bufferView) + 1 < model_.bufferViews.size() || from.sparse.isSparse;  // see check_gltf
-    // tinygltf also knows signed integers and doubles, which the format does not.
-    if (from.componentType > TINYGLTF_COMPONENT_TYPE_FLOAT || from.componentType == TINYGLTF_COMPONENT_TYPE_INT)
-        fail("{}: the component type {} is unknown", out.where, from.componentType);
+    if (const auto foreign = foreign_accessors_.find(static_cast<size_t>(index)); foreign != foreign_accessors_.end())
+        fail("{}: {} is unknown", out.where, foreign->second);
     return out;
 }
 

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "loaders/files.h"
+#include "loaders/gltf_check.h"
 #include "loaders/gltf_extensions.h"
 
 namespace peelray {
@@ -35,8 +36,8 @@ class GltfFile {
     const GltfExtensions& extensions() const { return extensions_; }
     /// What reading the file so far had to pass over.
     const Tally& ignored() const { return ignored_; }
-    /// How many nodes have a matrix and a translation, rotation or scale as well, which tinygltf drops.
-    size_t nodes_placed_twice() const { return nodes_placed_twice_; }
+    /// What is invalid about it and no reason to refuse it, seen before tinygltf dropped it.
+    const Tally& faults() const { return faults_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
     std::string where(const char* list, size_t index) const { return fmt::format("{}.{}[{}]", name_, list, index); }
 
@@ -76,7 +77,8 @@ class GltfFile {
     struct Glb {
         std::span<const uint8_t> json, binary;
     };
-    Glb split_glb(std::span<const uint8_t> all) const;
+    Glb split_glb(std::span<const uint8_t> all);
+    void hide_unknown_types(nlohmann::json& json);
     void take_uris(nlohmann::json& json, std::optional<size_t> glb_bytes);
     void load(const std::string& text, const Glb* glb);
     Bytes read_uri(const std::string& uri, const std::string& where);
@@ -107,8 +109,9 @@ class GltfFile {
     GltfExtensions extensions_;
     std::map<size_t, Bytes> decompressed_;  ///< by buffer view
     Tally ignored_;
-    size_t nodes_placed_twice_ = 0;
-    uint64_t decoded_ = 0;  ///< components decoded so far, see spend()
+    Tally faults_;
+    std::map<size_t, std::string> foreign_accessors_;  ///< those of an unknown type, which nothing may read
+    uint64_t decoded_ = 0;                             ///< components decoded so far, see spend()
 };
 
 }  // namespace peelray

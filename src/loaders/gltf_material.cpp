@@ -16,7 +16,8 @@ glm::vec3 to_vec3(const std::vector<double>& v) {
     return {v[0], v[1], v[2]};
 }
 
-Texture::Wrap wrap_mode(int mode, const std::string& where) {
+/// None: unknown.
+std::optional<Texture::Wrap> wrap_mode(int mode) {
     switch (mode) {
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
             return Texture::Wrap::clamp;
@@ -25,7 +26,7 @@ Texture::Wrap wrap_mode(int mode, const std::string& where) {
         case TINYGLTF_TEXTURE_WRAP_REPEAT:
             return Texture::Wrap::repeat;
         default:
-            fail("{}: {} is no wrap mode", where, mode);
+            return std::nullopt;
     }
 }
 
@@ -134,17 +135,18 @@ class MaterialReader {
         // 0 stands for an infinite index; what comes near to that is the same.
         material_.ior = ior == 0 || ior > 1e6 ? 0.f : static_cast<float>(std::max(1.0, ior));
         if (ior < 1 && ior != 0)
-            ++loader_.ignored["{} materials with an index of refraction below 1, other than 0, drawn with 1"];
+            ++loader_
+                  .ignored["{} {index|indices} of refraction below 1, other than 0, drawn with 1 (VALUE_NOT_IN_RANGE)"];
         const tinygltf::Value& specular = extension(from_.extensions, "KHR_materials_specular");
         material_.specular = unit(number(specular, "specularFactor", 1));
         material_.specular_color = glm::max(vector(specular, "specularColorFactor", glm::vec3(1)), glm::vec3(0));
         if (const auto mean = mean_of(texture_index(specular, "specularTexture"), false)) {
             material_.specular *= mean->w;
-            ++loader_.ignored["{} specular textures replaced by their mean"];
+            ++loader_.ignored["{} specular texture{|s} replaced by {its|their} mean"];
         }
         if (const auto mean = mean_of(texture_index(specular, "specularColorTexture"), true)) {
             material_.specular_color *= glm::vec3(*mean);
-            ++loader_.ignored["{} specular colour textures replaced by their mean"];
+            ++loader_.ignored["{} specular colour texture{|s} replaced by {its|their} mean"];
         }
     }
 
@@ -155,16 +157,29 @@ class MaterialReader {
         uv_.scale = vector(transform, "scale", uv_.scale);
         uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
         const std::optional<int> image = image_if_there(info.index, true);
-        uv_.used = image.has_value();
         if (image) material_.base_color_texture = texture_id(*image, info.index);
+        uv_.used = material_.base_color_texture >= 0;
     }
 
     /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
     void ignore(int texture, const char* sentence) {
         if (texture < 0) return;
         ++loader_.ignored[sentence];
-        if (const auto image = image_if_there(texture, false))
-            check_image(loader_.file.image_bytes(*image), where(*image));
+        const auto image = image_if_there(texture, false);
+        if (image) unless_damaged(*image, [&] { check_image(loader_.file.image_bytes(*image), where(*image)); });
+    }
+
+    /// Does `read`, unless the image is damaged, or it shows that it is: that is noted, and false.
+    template <typename Read>
+    bool unless_damaged(int image, Read read) {
+        if (loader_.damaged_images.contains(image)) return false;
+        try {
+            read();
+            return true;
+        } catch (const Error& error) {
+            loader_.damaged_images.emplace(image, error.text());
+            return false;
+        }
     }
 
     /// The image that a texture shows; none (with a note) where only an extension's format is offered.
@@ -192,7 +207,9 @@ class MaterialReader {
                                     "is|files are} missing"];
             return std::nullopt;
         }
-        const char* type = foreign_image_type(loader_.file.image_bytes(*image));
+        const char* type = nullptr;
+        if (!unless_damaged(*image, [&] { type = foreign_image_type(loader_.file.image_bytes(*image)); }))
+            return std::nullopt;
         if (!type) return image;
         ++loader_
               .ignored[fmt::format("{{}} texture{{|s}} left out, {{its image is|their images are}} of the type {}, "
@@ -204,14 +221,23 @@ class MaterialReader {
     int texture_id(int image, int texture) {
         const int index = model_.textures[static_cast<size_t>(texture)].sampler;
         const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
-        const std::string at = loader_.file.where("samplers", static_cast<size_t>(std::max(index, 0)));
-        const Texture::Wrap u = wrap_mode(sampler.wrapS, at + ".wrapS"), v = wrap_mode(sampler.wrapT, at + ".wrapT");
+        const auto known = [&](int mode) {
+            const std::optional<Texture::Wrap> wrap = wrap_mode(mode);
+            if (!wrap) ++loader_.ignored["{} unknown wrap modes read as REPEAT (VALUE_NOT_IN_LIST)"];
+            return wrap.value_or(Texture::Wrap::repeat);
+        };
+        const Texture::Wrap u = known(sampler.wrapS), v = known(sampler.wrapT);
         const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         const auto [entry, added] =
             loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
         if (added) {
             const std::string& name = model_.images[static_cast<size_t>(image)].name;
-            Texture decoded = decode_image(loader_.file.image_bytes(image), where(image));
+            Texture decoded;
+            if (!unless_damaged(image,
+                                [&] { decoded = decode_image(loader_.file.image_bytes(image), where(image)); })) {
+                entry->second = -1;
+                return -1;
+            }
             decoded.name = name.empty() ? loader_.file.image_file(image) : name;
             decoded.wrap_u = u;
             decoded.wrap_v = v;
@@ -231,7 +257,10 @@ class MaterialReader {
     std::optional<glm::vec4> mean_of(int texture, bool srgb) {
         const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture, false);
         if (!image) return std::nullopt;
-        return mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb);
+        std::optional<glm::vec4> mean;
+        unless_damaged(*image,
+                       [&] { mean = mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb); });
+        return mean;
     }
 
     GltfLoader& loader_;

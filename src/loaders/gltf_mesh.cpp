@@ -93,7 +93,9 @@ class PrimitiveReader {
 
     template <typename Vector>
     std::vector<Vector> vectors_of(int accessor, const char* name) {
-        return as_vectors<Vector>(name, loader_.file.accessor(accessor), loader_.file.floats(accessor));
+        const GltfFile::Accessor info = loader_.file.accessor(accessor);
+        note_format(info, name);
+        return as_vectors<Vector>(name, info, loader_.file.floats(accessor));
     }
 
     template <typename Vector>
@@ -106,6 +108,23 @@ class PrimitiveReader {
         for (size_t i = 0; i < out.size(); ++i)
             for (uint32_t c = 0; c < components; ++c) out[i][static_cast<int>(c)] = values[i * components + c];
         return out;
+    }
+
+    /// Whole numbers where the format has floats, or that stand for themselves where they are to stand for [0, 1].
+    void note_format(const GltfFile::Accessor& info, const std::string& name) const {
+        if (info.is_float() || name.starts_with("JOINTS_")) return;
+        const std::vector<std::string>& used = loader_.file.model().extensionsUsed;
+        const bool is_unit =
+            info.normalized && (info.component_type == 5121 || info.component_type == 5123) &&
+            (name.starts_with("TEXCOORD_") || name.starts_with("COLOR_") || name.starts_with("WEIGHTS_"));
+        const bool is_quantized =
+            std::find(used.begin(), used.end(), "KHR_mesh_quantization") != used.end() &&
+            (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with("TEXCOORD_"));
+        if (!is_unit && !is_quantized)
+            ++loader_.ignored[fmt::format(
+                "{{}} attributes {} of a type that the format does not have there used as they are "
+                "(MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT)",
+                name)];
     }
 
     void check_count(const char* name, size_t count, const Primitive& out) const {
@@ -173,6 +192,12 @@ class PrimitiveReader {
         read_colors(out);
         read_joints(out);
         read_targets(out);
+        const auto odd = std::count_if(out.normals.begin(), out.normals.end(), [](const glm::vec3& n) {
+            return std::isfinite(glm::length(n)) && glm::length(n) > 0 && std::abs(glm::length(n) - 1) > 0.01f;
+        });
+        if (odd)
+            loader_.ignored["{} normal{|s} of other than unit length scaled to it (ACCESSOR_VECTOR3_NON_UNIT)"] +=
+                size_t(odd);
         if (out.normals.empty())
             make_flat(out);
         else if (const size_t repaired = repair_normals(out))
@@ -182,12 +207,22 @@ class PrimitiveReader {
     void read_uvs(Primitive& out) {
         const UvSource& source = loader_.uv_sources[out.material];
         const std::string name = fmt::format("TEXCOORD_{}", source.used ? source.set : 0);
-        if (!has(name.c_str())) return;
+        if (!has(name.c_str())) {
+            if (source.used)
+                ++loader_.ignored
+                      ["{} primitive{|s} without the texture coordinates of {its|their} base colour texture "
+                       "{shows|show} its corner "
+                       "(MESH_PRIMITIVE_TOO_FEW_TEXCOORDS)"];
+            return;
+        }
         out.uvs = vectors<glm::vec2>(name.c_str());
         check_count(name.c_str(), out.uvs.size(), out);
         const float c = std::cos(source.rotation), s = std::sin(source.rotation);
         for (glm::vec2& uv : out.uvs) {
-            if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
+            if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+                uv = glm::vec2(0);
+                ++loader_.ignored["{} texture coordinates that are not finite count as 0 (ACCESSOR_INVALID_FLOAT)"];
+            }
             const glm::vec2 scaled = uv * source.scale;
             uv = glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + source.offset;
         }
@@ -201,8 +236,13 @@ class PrimitiveReader {
             out.colors = vectors<glm::vec4>("COLOR_0");
         }
         check_count("COLOR_0", out.colors.size(), out);
+        size_t outside = 0;
         for (glm::vec4& color : out.colors)
-            for (int i = 0; i < 4; ++i) color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.f, 1.f) : 1.f;
+            for (int i = 0; i < 4; ++i) {
+                outside += !(color[i] >= 0 && color[i] <= 1);
+                color[i] = std::isfinite(color[i]) ? std::clamp(color[i], 0.f, 1.f) : 1.f;
+            }
+        if (outside) loader_.ignored["{} channel{|s} of vertex colours outside of 0 to 1 clamped"] += outside;
     }
 
     /// JOINTS_0 with WEIGHTS_0 and JOINTS_1 with WEIGHTS_1; whether the joints exist is for the skin to say.
@@ -269,6 +309,10 @@ class PrimitiveReader {
             MorphTarget target;
             for (const auto& [name, accessor] : from_.targets[i]) {
                 if (name != "POSITION" && name != "NORMAL") continue;
+                if (!has(name.c_str()))
+                    ++loader_.ignored
+                          ["{} morph target{|s} of normals that the mesh does not have "
+                           "(MESH_PRIMITIVE_MORPH_TARGET_NO_BASE_ACCESSOR)"];
                 std::vector<glm::vec3>& values = name == "POSITION" ? target.positions : target.normals;
                 values = vectors_of<glm::vec3>(accessor, name.c_str());
                 check_count(fmt::format("targets[{}].{}", i, name).c_str(), values.size(), out);

@@ -98,21 +98,26 @@ class NodeReader {
             push(model_.nodes[i].children, add_node(i, parent));
         }
         sort_cameras();
-        if (const size_t count = loader_.file.nodes_placed_twice())
-            loader_
-                .ignored["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"] +=
-                count;
     }
 
   private:
-    std::vector<int> root_nodes() const {
-        if (!model_.scenes.empty()) return model_.scenes[static_cast<size_t>(std::max(model_.defaultScene, 0))].nodes;
-        std::vector<bool> is_child(model_.nodes.size());
+    std::vector<int> root_nodes() {
+        std::vector<size_t> parents(model_.nodes.size());
         for (const tinygltf::Node& node : model_.nodes)
-            for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
+            for (const int child : node.children) ++parents[static_cast<size_t>(child)];
+        if (const auto count = std::count_if(parents.begin(), parents.end(), [](size_t n) { return n > 1; }))
+            loader_.ignored["{} node{|s} with two parents, of which one counts (NODE_PARENT_OVERRIDE)"] +=
+                size_t(count);
         std::vector<int> roots;
-        for (size_t i = 0; i < is_child.size(); ++i)
-            if (!is_child[i]) roots.push_back(static_cast<int>(i));
+        if (model_.scenes.empty()) {
+            for (size_t i = 0; i < parents.size(); ++i)
+                if (parents[i] == 0) roots.push_back(static_cast<int>(i));
+            return roots;
+        }
+        roots = model_.scenes[static_cast<size_t>(std::max(model_.defaultScene, 0))].nodes;
+        for (const int root : roots)
+            if (parents[static_cast<size_t>(root)] > 0)
+                ++loader_.ignored["{} node{|s} of the scene shown without {its|their} parents (SCENE_NON_ROOT_NODE)"];
         return roots;
     }
 
@@ -136,6 +141,7 @@ class NodeReader {
         const bool is_hidden = is_node_hidden(from) || (parent >= 0 && hidden_[static_cast<size_t>(parent)]);
         hidden_.push_back(is_hidden);
         if (from.mesh >= 0 && !is_hidden) node.mesh = show_mesh(from.mesh, world);
+        if (node.mesh >= 0) note_skin(from);
         if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
             ++loader_.ignored
                   ["{} node{|s} with another number of weights than {its|their} mesh has morph targets "
@@ -167,6 +173,23 @@ class NodeReader {
             ++ignored
                 ["{} node matri{x|ces} that no translation, rotation and scale make used as {it is|they are} "
                  "(NODE_MATRIX_NON_TRS)"];
+    }
+
+    void note_skin(const tinygltf::Node& from) {
+        const auto& primitives = model_.meshes[static_cast<size_t>(from.mesh)].primitives;
+        const bool has_joints = std::any_of(primitives.begin(), primitives.end(), [](const tinygltf::Primitive& p) {
+            return p.attributes.contains("JOINTS_0");
+        });
+        if (from.skin >= 0 && !has_joints)
+            ++loader_.ignored
+                  ["{} node{|s} with a skin {follows its|follow their} node, for {its mesh has|their meshes have} no "
+                   "joints "
+                   "(NODE_SKIN_WITH_NON_SKINNED_MESH)"];
+        if (from.skin < 0 && has_joints)
+            ++loader_.ignored
+                  ["{} node{|s} without a skin {follows its|follow their} node, although {its mesh has|their meshes "
+                   "have} joints "
+                   "(NODE_SKINNED_MESH_WITHOUT_SKIN)"];
     }
 
     /// EXT_mesh_gpu_instancing: transforms inside of the node; none: the mesh is shown once.
@@ -231,28 +254,32 @@ class NodeReader {
         return mesh;
     }
 
-    Camera camera_of(size_t index) const {
+    /// Nothing, and a note, of one that cannot see.
+    std::optional<Camera> camera_of(size_t index) {
         const tinygltf::Camera& from = model_.cameras[index];
-        const std::string where = loader_.file.where("cameras", index);
         Camera camera;
         camera.name = from.name;
         camera.number = static_cast<uint32_t>(index);
         if (from.type == "perspective") {
             camera.vertical_fov = static_cast<float>(from.perspective.yfov);
-            if (!(camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f))
-                fail("{}: yfov {} is outside of (0, pi)", where, camera.vertical_fov);
         } else {
             camera.orthographic_height = 2 * std::abs(static_cast<float>(from.orthographic.ymag));
-            if (camera.orthographic_height == 0) fail("{}: ymag of the orthographic camera is 0 or missing", where);
+        }
+        const bool sees = from.type == "perspective" ? camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f
+                                                     : camera.orthographic_height > 0;
+        if (!sees) {
+            ++loader_.ignored["{} camera{|s} of an unknown type or without a field of view ignored"];
+            return std::nullopt;
         }
         return camera;
     }
 
     int add_camera(size_t index, const Node& node) {
-        Camera camera = camera_of(index);
-        if (camera.name.empty()) camera.name = node.name;
-        camera.node = node.name;
-        loader_.scene.cameras.push_back(std::move(camera));
+        std::optional<Camera> camera = camera_of(index);
+        if (!camera) return -1;
+        if (camera->name.empty()) camera->name = node.name;
+        camera->node = node.name;
+        loader_.scene.cameras.push_back(std::move(*camera));
         return static_cast<int>(loader_.scene.cameras.size()) - 1;
     }
 
@@ -275,7 +302,8 @@ class NodeReader {
         std::vector<bool> is_placed(model_.cameras.size());
         for (const Camera& camera : scene.cameras) is_placed[camera.number] = true;
         for (size_t i = 0; i < is_placed.size(); ++i)
-            if (!is_placed[i]) scene.unplaced_cameras.push_back(camera_of(i));
+            if (!is_placed[i])
+                if (std::optional<Camera> camera = camera_of(i)) scene.unplaced_cameras.push_back(std::move(*camera));
     }
 
     int add_light(size_t index, const Node& node) {
@@ -286,12 +314,18 @@ class NodeReader {
             light.kind = Light::Kind::point;
         else if (from.type == "spot")
             light.kind = Light::Kind::spot;
-        else if (from.type != "directional")
-            fail("{}: the light type \"{}\" is unknown", loader_.file.where("lights", index), printable(from.type, 20));
+        else if (from.type != "directional") {
+            ++loader_.ignored["{} light{|s} of an unknown type ignored (VALUE_NOT_IN_LIST)"];
+            return -1;
+        }
         light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
         if (from.range > 0) light.range = static_cast<float>(from.range);
         light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
         light.outer_cone = static_cast<float>(from.spot.outerConeAngle);
+        if (light.kind == Light::Kind::spot && light.inner_cone >= light.outer_cone)
+            ++loader_.ignored
+                  ["{} spot light{|s} whose inner cone reaches {its|their} outer one {ends|end} in a hard edge "
+                   "(KHR_LIGHTS_PUNCTUAL_LIGHT_SPOT_ANGLES)"];
         loader_.scene.lights.push_back(std::move(light));
         return static_cast<int>(loader_.scene.lights.size()) - 1;
     }

@@ -127,10 +127,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
         if (usable && hit.hit() && surfaces.optics_of_triangle(hit.triangle).unlit) unlit += radiance;
         if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit, context.box);
-        rays.reflection += shader.rays().reflection;
-        rays.refraction += shader.rays().refraction;
-        rays.shadow += shader.rays().shadow;
-        rays.ambient += shader.rays().ambient;
+        rays += shader.rays();
     }
     sum /= double(s.spp);
     picture.radiance[at] = glm::vec4(sum);
@@ -189,10 +186,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     const auto share = [&](const std::function<void(double)>& report) {
         const RayCounts rays = impl_->work(picture, context, view, tiles, report);
         const std::lock_guard lock(mutex);
-        picture.rays.reflection += rays.reflection;
-        picture.rays.refraction += rays.refraction;
-        picture.rays.shadow += rays.shadow;
-        picture.rays.ambient += rays.ambient;
+        picture.rays += rays;
     };
     std::vector<std::thread> others;
     std::atomic<unsigned> done{0};

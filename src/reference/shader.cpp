@@ -82,6 +82,8 @@ glm::dvec3 Shader::radiance(const Path& arriving, const OracleHit& hit) {
     glm::dvec3 sum = scattered.radiance;
     if (scattered.reflection.traced) rays_.reflection++;
     if (scattered.refraction.traced) rays_.refraction++;
+    rays_.cut_reflection += is_cut(scattered.reflection, path, context_.settings.reflection);
+    rays_.cut_refraction += is_cut(scattered.refraction, path, context_.settings.refraction);
     sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
     sum += follow(scattered.refraction, surface, path, hit.triangle, 1);
     sum += direct_light(surface, hit.triangle, path);
@@ -107,6 +109,12 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
 
 bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
     return effect && path.level < context_.settings.bounces && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+}
+
+/// Would it be traced if this level were not the last? With no bounces at all nobody asked for it.
+bool Shader::is_cut(const Branch& branch, const Path& path, bool effect) const {
+    return effect && path.level > 0 && path.level == context_.settings.bounces &&
+           largest(branch.weight * path.weight) >= LEAST_WEIGHT;
 }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.

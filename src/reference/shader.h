@@ -62,6 +62,7 @@ class Shader {
     Scattered scatter(const Surface& surface, const Path& path) const;
     glm::dvec3 half_vector(const Surface& surface, const glm::dvec3& view, double alpha, uint32_t seed) const;
     bool is_traced(const Branch& branch, const Path& path, bool effect) const;
+    bool is_cut(const Branch& branch, const Path& path, bool effect) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
 

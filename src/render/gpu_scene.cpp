@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/error.h"
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
@@ -41,6 +42,24 @@ std::vector<DrawRange> draw_ranges(const Assembly& assembly) {
 }
 
 }  // namespace
+
+void check_room(const Device& device, const Scene& scene) {
+    std::vector<bool> shown(scene.meshes.size());
+    for (const Node& node : scene.nodes)
+        if (node.mesh >= 0) shown[size_t(node.mesh)] = true;
+    uint64_t triangles = 0, vertices = 0;
+    for (size_t i = 0; i < shown.size(); i++)
+        for (const Primitive& primitive : scene.meshes[i].primitives) {
+            triangles += shown[i] ? primitive.triangles.size() : 0;
+            vertices += shown[i] ? primitive.positions.size() : 0;
+        }
+    const uint64_t bytes = std::max(triangles * sizeof(glm::uvec3), vertices * sizeof(glm::vec3));
+    const uint64_t most = device.limits().maxStorageBufferRange;
+    if (bytes > most)
+        throw NoRoom(fmt::format("{} triangles with {} vertices are more than the device '{}' binds at once ({})",
+                                 triangles, vertices, device.info().name, most / sizeof(glm::vec3)),
+                     device.room_advice());
+}
 
 GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
                    const Environment& env)

@@ -12,6 +12,10 @@
 
 namespace peelray {
 
+/// Throws NoRoom where the device cannot bind the triangles and vertices of the meshes that the scene shows: before
+/// they are assembled, which takes long where they are so many.
+void check_room(const Device& device, const Scene& scene);
+
 /// Uploaded once per scene and environment; pose() moves it. Throws Error when the device has no room.
 class GpuScene {
   public:

@@ -1,18 +1,21 @@
 #include "render/render_settings.h"
 
-#include <algorithm>
-
 namespace peelray {
 
-CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings) {
+CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings) {
     CubeChoice choice = settings.cubes;
+    if (!settings.hit_auto) return choice;
     // Beyond this the triangles are smaller than what a fine cube resolves, and `exact` lists grow long.
-    const uint64_t most = choice.layout.by_pixel() ? ~0ull : most_exact_triangles(device);
-    if (settings.hit_auto)
-        choice.hit = triangles > std::min<uint64_t>(4'000'000, most) ? HitTest::planar : HitTest::exact;
+    choice.hit = triangles > 4'000'000 ? HitTest::planar : HitTest::exact;
     // Peeling captures pixel centres.
-    if (settings.hit_auto && choice.layout.builder == BuilderKind::peel) choice.hit = HitTest::planar;
+    if (choice.layout.builder == BuilderKind::peel) choice.hit = HitTest::planar;
+    choice.may_be_planar = choice.hit == HitTest::exact;
     return choice;
+}
+
+bool needs_rays(const RenderSettings& settings) {
+    return settings.shadow || settings.ambient || settings.counters ||
+           (settings.bounces > 0 && (settings.reflection || settings.refraction));
 }
 
 }  // namespace peelray

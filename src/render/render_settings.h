@@ -15,7 +15,10 @@ struct RenderSettings : PictureSettings, TracerChoice {
     bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
 };
 
-/// What `auto` stands for in a scene of so many triangles.
-CubeChoice choose_automatically(const Device& device, uint32_t triangles, const RenderSettings& settings);
+/// What `auto` stands for in a scene of so many triangles, if the device has room for it (smaller_than).
+CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings);
+
+/// False: no effect that is on traces a ray, so that nothing need be built to trace any in.
+bool needs_rays(const RenderSettings& settings);
 
 }  // namespace peelray

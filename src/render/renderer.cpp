@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/error.h"
 #include "common/ray.h"
@@ -102,6 +103,7 @@ struct Renderer::Impl {
     void prepare_maps();
     void prepare_queues();
     FrameMeter render_frame(const Progress& progress);
+    void describe_tracer();
     void render_maps(FrameMeter& meter, const Progress& progress);
     void render_band(uint32_t sample, uint32_t first_row, FrameMeter& meter, const Progress& progress);
     void record_band(uint32_t sample, uint32_t first_row);
@@ -124,15 +126,18 @@ void Renderer::Impl::prepare(const RenderSettings& settings) {
     prepare_queues();
 }
 
-/// The tracer that the settings ask for, not yet built.
+/// The tracer that the settings ask for, or none where no effect needs any; not yet built.
 void Renderer::Impl::prepare_tracer() {
-    f.settings.cubes = choose_automatically(f.device, triangles_of(assembly), f.settings);
-    if (!f.tracer || made_for != f.settings) {
+    f.settings.cubes = choose_automatically(triangles_of(assembly), f.settings);
+    TracerChoice choice = f.settings;
+    if (choice.tracer == Tracer::khr) f.device.check_ray_tracing();
+    if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings)) choice.tracer = Tracer::none;
+    if (!f.tracer || made_for != choice) {
         f.tracer.reset();  // first, so that both never live at once
         f.tracer = make_tracer(
-            f.settings, {f.device, f.scene.triangles, f.scene.instances, assembly, moment.worlds, structure_bodies});
+            choice, {f.device, f.scene.triangles, f.scene.instances, assembly, moment.worlds, structure_bodies});
         f.tracer->pose(moved > 0);
-        made_for = f.settings;
+        made_for = choice;
     }
     const bool counts = f.settings.counters && f.tracer->counts();
     if (counts != (f.counter != nullptr)) f.counter = counts ? std::make_unique<CostCounter>(f.device) : nullptr;
@@ -189,6 +194,7 @@ FrameMeter Renderer::Impl::render_frame(const Progress& progress) {
     rays = {};
     f.tracer->build(
         f.commands, [&] { f.scene.record_animation(f.commands, f.tracer->bodies()); }, meter);
+    describe_tracer();
     if (f.maps) render_maps(meter, progress);
     if (f.counter) f.counter->record_begin(f.commands, f.pixels());
     for (uint32_t sample = 0; sample < f.settings.spp; sample++)
@@ -197,6 +203,14 @@ FrameMeter Renderer::Impl::render_frame(const Progress& progress) {
     finish_picture(meter);
     rays.primary = f.pixels() * f.settings.spp;
     return meter;
+}
+
+/// Where hits became planar for want of room, the constants say so.
+void Renderer::Impl::describe_tracer() {
+    const Frame before = f.constants;
+    f.tracer->describe(f.constants);
+    if (std::memcmp(&before, &f.constants, sizeof before) != 0)
+        f.commands.upload(f.view.target.frame, std::span<const Frame>(&f.constants, 1));
 }
 
 void Renderer::Impl::render_maps(FrameMeter& meter, const Progress& progress) {
@@ -263,6 +277,8 @@ void Renderer::Impl::count_rays() {
     rays.refraction += queues.count(QUEUE_REFRACTION);
     rays.shadow += queues.count(QUEUE_LIGHT) - queues.count(QUEUE_AMBIENT);
     rays.ambient += queues.count(QUEUE_AMBIENT);
+    rays.cut_reflection += queues.count(QUEUE_CUT_REFLECTION);
+    rays.cut_refraction += queues.count(QUEUE_CUT_REFRACTION);
 }
 
 /// Post passes change the picture in place: not before its last band is known to have fitted.
@@ -276,8 +292,6 @@ void Renderer::Impl::finish_picture(FrameMeter& meter) {
 void Renderer::Impl::describe(RenderStats& stats) {
     stats.timed = f.device.timestamp_period() > 0;
     stats.tracer = f.settings.tracer;
-    stats.choice = f.settings.cubes;
-    stats.hit = f.settings.cubes.hit;
     stats.visibility = f.view.by_number() ? Visibility::compute : Visibility::raster;
     stats.scene_bytes = f.scene.bytes();
     stats.frame_bytes = f.queues.bytes() + output.bytes() + f.view.bytes();
@@ -286,6 +300,8 @@ void Renderer::Impl::describe(RenderStats& stats) {
     if (f.counter) stats.costs = f.counter->sums();
     if (f.maps) stats.maps = f.maps->stats();
     f.tracer->describe(f.commands, stats);
+    stats.choice = stats.cubes.bodies > 0 ? stats.cubes.choice : f.settings.cubes;
+    stats.hit = stats.choice.hit;
 }
 
 Renderer::Renderer(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,

@@ -14,6 +14,10 @@ constexpr float kPlanarResolution = 1024;
 /// as much that its voxels are at most so many times as fine.
 constexpr float kLeast = 0.25f, kFinest = 4;
 constexpr size_t kFewBodies = 16;
+/// Where cubes find no room, those with this share of their voxels along a side are tried, down to the last. A
+/// surface's samples become fewer with the square of it until there is about one for each triangle and LDI: that takes
+/// an eighth.
+constexpr float kCoarser = 0.75f, kCoarsest = 0.1f;
 
 float longest_side(const Assembly::Body& body) {
     const glm::vec3 size = body.upper - body.lower;
@@ -81,11 +85,22 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
 
 }  // namespace
 
+std::optional<CubeChoice> smaller_than(const CubeChoice& choice) {
+    CubeChoice smaller = choice;
+    smaller.fineness *= kCoarser;
+    if (choice.ldc == 0 && smaller.fineness >= kCoarsest) return smaller;
+    if (!choice.may_be_planar) return std::nullopt;
+    smaller.fineness = 1;
+    smaller.hit = HitTest::planar;
+    smaller.may_be_planar = false;
+    return smaller;
+}
+
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed) {
     float largest = 1e-30f;
     for (const Assembly::Body& body : assembly.bodies) largest = std::max(largest, longest_side(body));
     const bool by_triangles = choice.ldc == 0 && choice.hit == HitTest::exact;
-    const float n = choice.ldc == 0 ? kPlanarResolution : float(round_resolution(choice.ldc));
+    const float n = choice.ldc == 0 ? kPlanarResolution * choice.fineness : float(round_resolution(choice.ldc));
     std::vector<uint32_t> resolutions;
     for (size_t i = 0; i < assembly.bodies.size(); i++) {
         const Assembly::Body& body = assembly.bodies[i];
@@ -97,10 +112,17 @@ std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeCho
         if (choice.hit == HitTest::exact)
             resolution = std::min(resolution, in_sixteens(16 * std::sqrt(float(body.triangles))));
         if (by_triangles)
-            resolution = serving_resolution(body.triangles, longest_side(body), body.inverse_edges, i >= fixed);
+            resolution = in_sixteens(choice.fineness * float(serving_resolution(body.triangles, longest_side(body),
+                                                                                body.inverse_edges, i >= fixed)));
         resolutions.push_back(resolution);
     }
     return resolutions;
+}
+
+uint32_t largest_resolution(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed) {
+    if (choice.ldc != 0) return round_resolution(choice.ldc);
+    const std::vector<uint32_t> resolutions = choose_resolutions(assembly, choice, fixed);
+    return *std::max_element(resolutions.begin(), resolutions.end());
 }
 
 SceneCubes::SceneCubes(Device& device, const Assembly& assembly, const CubeChoice& choice, uint32_t fixed,
@@ -141,6 +163,7 @@ SceneCubes::Stats SceneCubes::stats() const {
     Stats stats;
     stats.bodies = uint32_t(cubes_.bodies().size());
     stats.fixed = fixed_;
+    stats.choice = choice_;
     for (const CubeBody& body : cubes_.bodies()) stats.bare += body.bare;
     if (choice_.ldc != 0)
         stats.resolution = round_resolution(choice_.ldc);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "assembly/assembly.h"
 #include "ldc/cube_builder.h"
@@ -13,6 +15,9 @@ namespace peelray {
 /// How cubes are to be: what the settings say, with what `auto` stands for filled in.
 struct CubeChoice {
     uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
+    /// Of resolutions that are chosen: less than 1 where those would find no room.
+    float fineness = 1;
+    bool may_be_planar = false;  ///< `hit`, exact, was chosen: planar hits may take its place
     HitTest hit = HitTest::exact;
     bool ldc_each = false;     ///< `ldc` voxels for every body, not only for the largest
     float tolerance = 0.001f;  ///< of HitTest::tolerance, world units
@@ -20,10 +25,18 @@ struct CubeChoice {
     bool operator==(const CubeChoice&) const = default;
 };
 
+/// What to try where the device has no room for the cubes of `choice`. A resolution that may be chosen becomes coarser,
+/// step by step, which no exact hit depends on; then a hit test that may be chosen becomes planar, as fine as it gets.
+/// None: the settings leave no choice.
+std::optional<CubeChoice> smaller_than(const CubeChoice& choice);
+
 /// Voxels along the longest side of the cube of each body: `ldc` for the largest, as many per metre for smaller ones,
 /// but at least a quarter of it. `fixed`: of the first so many bodies they are built once, of the others for every
 /// frame.
 std::vector<uint32_t> choose_resolutions(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed);
+
+/// The largest resolution that was asked for, or chosen.
+uint32_t largest_resolution(const Assembly& assembly, const CubeChoice& choice, uint32_t fixed);
 
 class SceneCubes {
   public:
@@ -51,8 +64,13 @@ class SceneCubes {
         uint32_t bare = 0;               ///< of the bodies, those without a cube (CubeBody::bare)
         uint32_t cubes() const { return bodies - bare; }
         uint32_t resolution = 0;  ///< what was asked for, or the largest of all
-        LdcCounters counts{};     ///< of all bodies; longest: the longest list of all
-        uint64_t bytes = 0;       ///< of the tables in use
+        CubeChoice choice;        ///< what they were built with
+        /// What found no room, with this largest resolution and this hit test; empty: the first choice did.
+        std::string no_room;
+        uint32_t no_room_resolution = 0;
+        HitTest no_room_hit = HitTest::exact;
+        LdcCounters counts{};  ///< of all bodies; longest: the longest list of all
+        uint64_t bytes = 0;    ///< of the tables in use
         uint64_t scratch_bytes = 0;
         uint32_t redone = 0;  ///< how often a build did not fit and was done again
     };

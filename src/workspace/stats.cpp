@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/setting.h"
+#include "settings/limits.h"
 
 namespace peelray {
 
@@ -15,6 +16,28 @@ Machine machine_of(const Device& device) {
 
 std::string count_of_cubes(const SceneCubes::Stats& cubes) {
     return fmt::format("{} cube{} of up to {}", cubes.cubes(), cubes.cubes() == 1 ? "" : "s", cubes.resolution);
+}
+
+std::string room_note(const SceneCubes::Stats& cubes) {
+    if (cubes.no_room.empty()) return {};
+    const bool other_hits = cubes.choice.hit != cubes.no_room_hit;
+    return fmt::format(
+        "{}, for {} hits at N = {}: rays are traced in cubes of N = {}{}", cubes.no_room, name_of(cubes.no_room_hit),
+        cubes.no_room_resolution, cubes.resolution,
+        other_hits ? fmt::format(", by {} hits, which are as good as their voxels are fine", name_of(cubes.choice.hit))
+                   : std::string());
+}
+
+std::string cut_note(const RayCounts& rays, uint32_t bounces) {
+    constexpr double kNoticed = 0.001;  // of the camera's rays
+    const double share = double(rays.cut_refraction) / double(std::max<uint64_t>(rays.primary, 1));
+    if (share <= kNoticed) return {};
+    const uint32_t more = std::min(2 * bounces, uint32_t(kBounceLimits.most));
+    const std::string text = fmt::format(
+        "{} rays ({:.1f} % of the camera's) would pass through more glass than {} {} follows: they see the environment "
+        "there",
+        rays.cut_refraction, 100 * share, setting::bounces, bounces);
+    return more > bounces ? fmt::format("{}; {} {} goes further", text, setting::bounces, more) : text;
 }
 
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {

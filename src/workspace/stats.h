@@ -55,6 +55,12 @@ struct TraceStats {
 /// "2 cubes of up to 368": how many, and their voxels along the longest side.
 std::string count_of_cubes(const SceneCubes::Stats& cubes);
 
+/// What to say where cubes as fine as they should be, or exact hits, found no room; empty: nothing.
+std::string room_note(const SceneCubes::Stats& cubes);
+
+/// What to say where rays that show much of the picture end at the last bounce; empty: nothing.
+std::string cut_note(const RayCounts& rays, uint32_t bounces);
+
 /// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:
 /// nothing. `bodies`: with the grids of their cubes.
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice);

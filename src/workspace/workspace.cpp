@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "render/gpu_scene.h"
 #include "scene/sidedness.h"
 #include "workspace/culled_view.h"
 #include "workspace/reference.h"
@@ -34,7 +35,8 @@ void Workspace::check(Tracer tracer) {
 void Workspace::renew_device() {
     renderer_.reset();
     device_.reset();
-    noted_ambient_ = noted_tolerance_ = false;
+    noted_ambient_ = noted_tolerance_ = noted_culled_ = noted_cut_ = false;
+    noted_room_ = {};
 }
 
 void Workspace::check_validation() const {
@@ -57,6 +59,8 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
     MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, report)
                                                             : render_on_device(settings, report);
+    const std::string cut = cut_note(made.stats.rays, settings.bounces);
+    if (!cut.empty() && !std::exchange(noted_cut_, true)) note(notes_, cut);
     note_culled(settings, made.picture);
     return in_world(std::move(made));
 }
@@ -92,6 +96,7 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     if (!renderer_ || !(kind == kind_)) {
         renderer_.reset();
         device().reset_peak();
+        check_room(*device_, scene_.scene());
         renderer_ = std::make_unique<Renderer>(*device_, scene_.scene(), scene_.moment(), scene_.assembly(),
                                                scene_.environment());
         kind_ = kind;
@@ -100,6 +105,15 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     if (posed_ != scene_.time()) renderer_->pose(scene_.moment());
     posed_ = scene_.time();
     return *renderer_;
+}
+
+/// Once for all pictures; of too little room once for each hit test that is left.
+void Workspace::note_cubes(const RenderStats& stats) {
+    const std::string room = room_note(stats.cubes);
+    if (!room.empty() && !noted_room_.has(stats.hit)) note(notes_, room);
+    if (!room.empty()) noted_room_.add(stats.hit);
+    const std::string tolerance = tolerance_note(stats.bodies, stats.choice);
+    if (!tolerance.empty() && !std::exchange(noted_tolerance_, true)) note(notes_, tolerance);
 }
 
 MadePicture Workspace::render_on_device(const RenderSettings& settings, const Progress& progress) {
@@ -117,8 +131,7 @@ MadePicture Workspace::render_on_device(const RenderSettings& settings, const Pr
     stats.render = std::move(result.stats);
     for (const RayCostField& field : kRayCostFields)
         stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
-    const std::string text = tolerance_note(stats.render.bodies, stats.render.choice);
-    if (!text.empty() && !std::exchange(noted_tolerance_, true)) note(notes_, text);
+    note_cubes(stats.render);
     made.picture = std::move(result);
     return made;
 }

@@ -63,6 +63,7 @@ class Workspace {
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
     MadePicture in_world(MadePicture made) const;
+    void note_cubes(const RenderStats& stats);
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 
@@ -78,10 +79,12 @@ class Workspace {
         HitTest hit;
         bool operator==(const Kind&) const = default;
     } kind_{};
-    std::optional<double> posed_;   ///< the moment that the renderer is in
-    bool noted_ambient_ = false;    ///< said that a tracer has none
-    bool noted_tolerance_ = false;  ///< said that it is too small
-    bool noted_culled_ = false;     ///< said that the camera is behind single-sided faces
+    std::optional<double> posed_;    ///< the moment that the renderer is in
+    bool noted_ambient_ = false;     ///< said that a tracer has none
+    bool noted_tolerance_ = false;   ///< said that it is too small
+    bool noted_culled_ = false;      ///< said that the camera is behind single-sided faces
+    bool noted_cut_ = false;         ///< said that rays end too early
+    ChoiceSet<HitTest> noted_room_;  ///< said that these stand for what found no room
 };
 
 }  // namespace peelray

@@ -70,6 +70,38 @@ Primitive slab(float front, float back) {
     return box({-4, -4, back}, {4, 4, front});
 }
 
+TEST_F(GlassTest, RaysThatEndAtTheLastBounceAreCounted) {
+    RenderSettings settings = settings_for(perspective({0, 0, 9}, {0, 0, 0}, 30), 16);
+    settings.reflection = settings.shadow = false;
+    settings.bounces = 4;
+    for (const int panes : {4, 5, 7}) {
+        Stage stage;
+        for (int i = 0; i < panes; i++)
+            stage.add(parallelogram({-8, -8, float(-i)}, {16, 0, 0}, {0, 16, 0}), thin_glass());
+        const auto cut = [&](uint32_t bounces) {
+            settings.bounces = bounces;
+            const auto picture = render(stage, white, settings);
+            EXPECT_EQ(picture.rays.cut_reflection, 0u);
+            EXPECT_EQ(picture.rays.refraction, 16u * 16 * std::min<uint64_t>(bounces, uint64_t(panes)));
+            return picture.rays.cut_refraction;
+        };
+        // The last bounce's ray goes to pane number 1 + bounces, and would go on behind it.
+        EXPECT_EQ(cut(4), panes > 4 ? 16u * 16 : 0u) << panes;
+        EXPECT_EQ(cut(3), 16u * 16) << panes;
+        EXPECT_EQ(cut(7), 0u) << panes;
+        EXPECT_EQ(cut(0), 0u) << "nobody asked for bounces";
+    }
+    // Between two mirrors rays never end; half of the light is lost at each, so that they are cut by their weight.
+    Stage stage;
+    stage.add(parallelogram({-8, -8, 0}, {16, 0, 0}, {0, 16, 0}), plane_mirror(glm::vec3(0.5f)));
+    stage.add(parallelogram({-8, -8, 10}, {0, 16, 0}, {16, 0, 0}), plane_mirror(glm::vec3(0.5f)));
+    settings.reflection = true;
+    settings.bounces = 4;
+    EXPECT_EQ(render(stage, white, settings).rays.cut_reflection, 16u * 16);
+    settings.bounces = 12;
+    EXPECT_EQ(render(stage, white, settings).rays.cut_reflection, 0u);
+}
+
 TEST_F(GlassTest, SlabShiftsTheBackgroundBySnellsLaw) {
     Stage stage;
     add_backdrop(stage);

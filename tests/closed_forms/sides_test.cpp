@@ -6,7 +6,7 @@ namespace {
 
 using SidesTest = PictureTest;
 
-const glm::dvec3 kPane(0.7, 0.2, 0.1), kFar(0.1, 0.3, 0.8), kNear(0.2, 0.6, 0.3);
+const glm::dvec3 kSide(0.7, 0.2, 0.1), kFar(0.1, 0.3, 0.8), kNear(0.2, 0.6, 0.3);
 
 Material single_sided(Material material) {
     material.double_sided = false;
@@ -16,7 +16,7 @@ Material single_sided(Material material) {
 /// A pane in z = 0, 2 by 2 around the origin, that faces +z, between walls at z = -1 and z = 10.
 Stage pane_between_walls() {
     Stage stage;
-    stage.add(parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), single_sided(unlit(glm::vec3(kPane))));
+    stage.add(parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), single_sided(unlit(glm::vec3(kSide))));
     stage.add(parallelogram({-90, -90, -1}, {180, 0, 0}, {0, 180, 0}), unlit(glm::vec3(kFar)));
     stage.add(parallelogram({-90, -90, 10}, {180, 0, 0}, {0, 180, 0}), unlit(glm::vec3(kNear)));
     return stage;
@@ -29,7 +29,7 @@ std::optional<glm::dvec3> seen_between_walls(const ViewRay& ray, double front = 
     const glm::dvec3 p = ray.at_plane(2, 0);
     const double reach = std::max(std::abs(p.x), std::abs(p.y));
     if (std::abs(reach - 1) < 1e-3) return {};
-    return reach < 1 ? kPane : wall;
+    return reach < 1 ? kSide : wall;
 }
 
 const std::vector<Camera> kCameras = {
@@ -62,7 +62,7 @@ TEST_F(SidesTest, AReflectionTakesTheFrontAlong) {
 TEST_F(SidesTest, InstancesAndTheirReflectionsFaceOutwards) {
     // One ball that several nodes show, of which one reflects it and one turns and squeezes it: a body with instances.
     Stage stage;
-    stage.add(sphere({0, 0, 0}, 1, 24), single_sided(unlit(glm::vec3(kPane))));
+    stage.add(sphere({0, 0, 0}, 1, 24), single_sided(unlit(glm::vec3(kSide))));
     const auto show = [&](const glm::mat4& local) {
         Node node;
         node.mesh = 0;
@@ -85,7 +85,7 @@ TEST_F(SidesTest, InstancesAndTheirReflectionsFaceOutwards) {
           [](const ViewRay& ray) -> std::optional<glm::dvec3> {
               const double miss = glm::length(glm::cross(ray.origin, ray.direction));
               if (miss < 0.45) return kNear;
-              if (miss > 0.55 && miss < 0.95) return kPane;
+              if (miss > 0.55 && miss < 0.95) return kSide;
               return {};
           })
         .expect(0, 1200);
@@ -93,7 +93,7 @@ TEST_F(SidesTest, InstancesAndTheirReflectionsFaceOutwards) {
 
 TEST_F(SidesTest, AnInvertedHullIsAnOutline) {
     Stage stage;
-    stage.add(sphere({0, 0, 0}, 1, 96), unlit(glm::vec3(kPane)));
+    stage.add(sphere({0, 0, 0}, 1, 96), unlit(glm::vec3(kSide)));
     Primitive hull = sphere({0, 0, 0}, 1.2f, 96);
     for (auto& triangle : hull.triangles) std::swap(triangle.y, triangle.z);
     stage.add(hull, single_sided(unlit({0, 0, 0})));
@@ -103,7 +103,7 @@ TEST_F(SidesTest, AnInvertedHullIsAnOutline) {
               const double miss = glm::length(glm::cross(ray.origin, ray.direction));
               for (const double edge : {1.0, 1.2})
                   if (std::abs(miss - edge) < 0.01) return {};
-              return miss < 1 ? kPane : glm::dvec3(miss < 1.2 ? 0 : 1);
+              return miss < 1 ? kSide : glm::dvec3(miss < 1.2 ? 0 : 1);
           })
         .expect(0, 14000);
 }
@@ -113,7 +113,7 @@ TEST_F(SidesTest, MirrorsShowNoBacks) {
         SCOPED_TRACE(towards);
         Stage stage;
         stage.add(parallelogram({-towards, -1, 0}, {2 * towards, 0, 0}, {0, 2, 0}),
-                  single_sided(unlit(glm::vec3(kPane))));  // faces +z or -z
+                  single_sided(unlit(glm::vec3(kSide))));  // faces +z or -z
         stage.add(parallelogram({-90, -90, -1}, {180, 0, 0}, {0, 180, 0}), unlit(glm::vec3(kFar)));
         stage.add(parallelogram({-4, -4, 3}, {0, 8, 0}, {8, 0, 0}), plane_mirror());
         const Camera camera = perspective({0.2f, 0.3f, 1.5f}, {0, 0, 3}, 50);
@@ -123,7 +123,7 @@ TEST_F(SidesTest, MirrorsShowNoBacks) {
                   const glm::dvec3 p = mirrored.at_plane(2, 0);
                   const double reach = std::max(std::abs(p.x), std::abs(p.y));
                   if (std::abs(reach - 1) < 1e-3) return {};
-                  return reach < 1 && towards > 0 ? kPane : kFar;
+                  return reach < 1 && towards > 0 ? kSide : kFar;
               })
             .expect(0, 10000);
     }
@@ -166,7 +166,7 @@ TEST_F(SidesTest, LightPassesBacks) {
 TEST_F(SidesTest, AnInvertedHullDoesNotDarkenWhatItSurrounds) {
     // Nor do the far faces of a lit body, which light meets from inside; what is behind both is in their shadow.
     Stage stage;
-    stage.add(sphere({0, 1.5f, 0}, 1, 32), lambert(glm::vec3(kPane)));
+    stage.add(sphere({0, 1.5f, 0}, 1, 32), lambert(glm::vec3(kSide)));
     stage.add(ground(9), lambert({1, 1, 1}));
     stage.sun({0.2f, -1, -0.3f}, glm::vec3(kPi));
     const Camera camera = perspective({1, 3, 6}, {0, 1, 0}, 50);
@@ -220,7 +220,7 @@ TEST_F(SidesTest, HolesAndSidesAtOnce) {
         SCOPED_TRACE(towards);
         Stage stage;
         stage.add(parallelogram({-towards, -1, 0}, {2 * towards, 0, 0}, {0, 2, 0}),
-                  single_sided(masked(stage, unlit(glm::vec3(kPane)))));
+                  single_sided(masked(stage, unlit(glm::vec3(kSide)))));
         stage.add(parallelogram({-90, -90, -1}, {180, 0, 0}, {0, 180, 0}), unlit(glm::vec3(kFar)));
         const Camera camera = perspective({0.3f, 0.2f, 2.4f}, {0, 0, 0}, 45);
         tally(render(stage, black, settings_for(camera, 96)), camera, 1e-5,
@@ -229,7 +229,7 @@ TEST_F(SidesTest, HolesAndSidesAtOnce) {
                   if (std::max(std::abs(p.x), std::abs(p.y)) > 0.999) return {};
                   const auto whole = whole_at({(towards * p.x + 1) / 2, (p.y + 1) / 2});
                   if (!whole) return {};
-                  return *whole && towards > 0 ? kPane : kFar;
+                  return *whole && towards > 0 ? kSide : kFar;
               })
             .expect(0, 2000);
     }

@@ -11,9 +11,29 @@ using BufferTest = DeviceTest;
 TEST_F(BufferTest, BeyondTheBindingLimitSaysWhatAndHowMuch) {
     const uint64_t most = device().limits().maxStorageBufferRange;
     const uint64_t before = device().allocated();
-    expect_error([&] { Buffer(device(), "the cube's samples", most + 1); },
-                 {"the cube's samples", "MiB", device().info().name, "--ldc", "--device"});
+    const std::pair<const char*, const char*> parts[] = {
+        {"cubes", "--ldc"}, {"build scratch", "--ldc"}, {"frame", "--size"}, {"scene", "--tracer reference"}};
+    for (const auto& [name, advice] : parts) {
+        const MemoryPart part(device(), name);
+        expect_error([&] { Buffer(device(), "the thing", most + 1); },
+                     {"the thing", "MiB", device().info().name, advice, "--device"});
+    }
+    EXPECT_THROW(Buffer(device(), "the thing", most + 1), NoRoom);
     EXPECT_EQ(device().allocated(), before);
+}
+
+TEST(SmallDevice, BindsAndHoldsNoMoreThanItIsTold) {
+    DeviceOptions options;
+    options.most_bound = 1 << 20;
+    options.most_held = 3 << 20;
+    Device device(options);
+    EXPECT_EQ(device.limits().maxStorageBufferRange, 1u << 20);
+    EXPECT_THROW(Buffer(device, "too large", (1 << 20) + 1), NoRoom);
+    const Buffer first(device, "first", 1 << 20), second(device, "second", 1 << 20);
+    const auto two_more = [&] { const Buffer one(device, "third", 1 << 20), other(device, "fourth", 1 << 20); };
+    EXPECT_THROW(two_more(), NoRoom);
+    const Buffer third(device, "third", 1 << 19);  // what was freed is free again
+    EXPECT_TRUE(third);
 }
 
 TEST_F(BufferTest, EvenAnEmptyBufferCanBeBound) {

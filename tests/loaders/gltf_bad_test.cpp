@@ -277,21 +277,45 @@ TEST(GltfBad, Images) {
     EXPECT_EQ(gone.materials.at(0).base_color_texture, -1);
     ASSERT_EQ(gone.notes.size(), 1u);
     EXPECT_MENTIONS(gone.notes[0], "gone.png is missing");
-    folder.write("text.png", "this is no image");
-    EXPECT_MENTIONS(error_of(folder, textured("text.png")), "images[0] (text.png)");
-    folder.write("empty.png", "");
-    EXPECT_MENTIONS(error_of(folder, textured("empty.png")), "empty");
+    // So it is used instead of a damaged one.
     const std::string whole = tiny_png();
-    folder.write("cut.png", whole.substr(0, whole.size() - 25));
-    EXPECT_MENTIONS(error_of(folder, textured("cut.png")), "cut.png");
     std::string huge = whole;
     huge[17] = '\x7F';  // a width of 8 million pixels
-    folder.write("huge.png", huge);
-    EXPECT_MENTIONS(error_of(folder, textured("huge.png")), "huge.png");
-    // Also where the texture has no effect on our picture.
+    const std::pair<const char*, std::string> damaged[] = {{"text.png", "this is no image"},
+                                                           {"empty.png", ""},
+                                                           {"cut.png", whole.substr(0, whole.size() - 25)},
+                                                           {"huge.png", huge}};
+    for (const auto& [name, bytes] : damaged) {
+        SCOPED_TRACE(name);
+        folder.write(name, bytes);
+        for (const char* use : {"base colour", "mean", "without effect"}) {
+            json gltf = textured(name);
+            if (use[0] == 'm') gltf["materials"][0] = {{"emissiveTexture", {{"index", 0}}}};
+            if (use[0] == 'w') gltf["materials"][0] = {{"normalTexture", {{"index", 0}}}};
+            // The header of the one that is cut is whole, and nobody reads the rest.
+            if (use[0] == 'w' && name == std::string("cut.png")) continue;
+            const Scene scene = load(folder, gltf);
+            EXPECT_EQ(scene.materials.at(0).base_color_texture, -1);
+            EXPECT_TRUE(scene.textures.empty());
+            EXPECT_MENTIONS(all_notes(scene), fmt::format("images[0] ({})", name)) << use;
+            EXPECT_MENTIONS(all_notes(scene), "the factor is used") << use;
+        }
+    }
+    // Also where it is no file, and once for all of its uses.
+    for (const char* uri : {"data:image/png;base64,AAAA", "data:image/png;base64,A", "data:,"}) {
+        json gltf = textured(uri);
+        gltf["materials"].push_back(gltf["materials"][0]);
+        gltf["materials"].push_back({{"emissiveTexture", {{"index", 0}}}});
+        const Scene scene = load(folder, gltf);
+        EXPECT_EQ(scene.notes.size(), 1u) << uri;
+    }
+    json several = textured("text.png");
+    several["images"].push_back({{"uri", "empty.png"}});
+    several["textures"].push_back({{"source", 1}});
+    several["materials"].push_back({{"emissiveTexture", {{"index", 1}}}});
+    EXPECT_MENTIONS(all_notes(load(folder, several)), "2 images are damaged");
     json gltf = textured("text.png");
     gltf["materials"][0] = {{"normalTexture", {{"index", 0}}}};
-    EXPECT_MENTIONS(error_of(folder, gltf), "text.png");
     gltf["materials"][0]["normalTexture"]["index"] = 1;
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
 }

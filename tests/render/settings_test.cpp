@@ -173,19 +173,62 @@ TEST_F(SettingsTest, ImpossibleSettingsAreNamed) {
 
 TEST_F(SettingsTest, AutoChoosesByTriangles) {
     RenderSettings settings;
-    EXPECT_EQ(choose_automatically(device(), 1000, settings).hit, HitTest::exact);
-    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).hit, HitTest::planar);
-    // A software device binds 128 MiB: the corners of more triangles than that do not fit.
-    const uint64_t most = most_exact_triangles(device());
-    EXPECT_EQ(most, device().limits().maxStorageBufferRange / 48);
-    if (most < 4'000'000) {
-        EXPECT_EQ(choose_automatically(device(), uint32_t(most), settings).hit, HitTest::exact);
-        EXPECT_EQ(choose_automatically(device(), uint32_t(most) + 1, settings).hit, HitTest::planar);
-    }
+    EXPECT_EQ(choose_automatically(1000, settings).hit, HitTest::exact);
+    EXPECT_TRUE(choose_automatically(1000, settings).may_be_planar);
+    EXPECT_EQ(choose_automatically(20'000'000, settings).hit, HitTest::planar);
+    EXPECT_FALSE(choose_automatically(20'000'000, settings).may_be_planar);
     settings.cubes.ldc = 77;
-    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).ldc, 77u);
+    EXPECT_EQ(choose_automatically(20'000'000, settings).ldc, 77u);
     settings.hit_auto = false;
-    EXPECT_EQ(choose_automatically(device(), 20'000'000, settings).hit, HitTest::exact);
+    EXPECT_EQ(choose_automatically(20'000'000, settings).hit, HitTest::exact);
+    EXPECT_FALSE(choose_automatically(20'000'000, settings).may_be_planar);
+}
+
+TEST_F(SettingsTest, WhatFindsNoRoomBecomesCoarserAndPlanarLast) {
+    CubeChoice choice;
+    choice.may_be_planar = true;
+    std::vector<CubeChoice> tried = {choice};
+    for (auto next = smaller_than(choice); next; next = smaller_than(tried.back())) {
+        ASSERT_LT(tried.size(), 100u);
+        tried.push_back(*next);
+    }
+    // Each step is coarser than the one before, first exact, then planar; there is an end.
+    size_t exact = 0;
+    for (size_t i = 1; i < tried.size(); i++) {
+        exact += tried[i].hit == HitTest::exact;
+        if (tried[i].hit != tried[i - 1].hit) continue;
+        EXPECT_LT(tried[i].fineness, tried[i - 1].fineness);
+    }
+    EXPECT_GE(exact, 4u);
+    EXPECT_EQ(tried[exact + 1].hit, HitTest::planar);
+    EXPECT_EQ(tried[exact + 1].fineness, 1);
+    EXPECT_EQ(tried.back().hit, HitTest::planar);
+    // What the user chose stays.
+    choice.ldc = 512;
+    ASSERT_TRUE(smaller_than(choice).has_value());
+    EXPECT_EQ(smaller_than(choice)->hit, HitTest::planar);
+    EXPECT_EQ(smaller_than(choice)->ldc, 512u);
+    choice.may_be_planar = false;
+    EXPECT_FALSE(smaller_than(choice).has_value());
+    choice.ldc = 0;
+    for (auto next = smaller_than(choice); next; next = smaller_than(*next)) EXPECT_EQ(next->hit, HitTest::exact);
+}
+
+TEST_F(SettingsTest, RaysAreNeededWhereAnEffectTracesThem) {
+    RenderSettings settings;
+    EXPECT_TRUE(needs_rays(settings));
+    settings.shadow = false;
+    settings.bounces = 0;
+    EXPECT_FALSE(needs_rays(settings)) << "no bounce, no reflection";
+    settings.ambient = true;
+    EXPECT_TRUE(needs_rays(settings));
+    settings.ambient = settings.reflection = false;
+    settings.bounces = 1;
+    EXPECT_TRUE(needs_rays(settings)) << "refraction";
+    settings.refraction = false;
+    EXPECT_FALSE(needs_rays(settings));
+    settings.counters = true;
+    EXPECT_TRUE(needs_rays(settings)) << "counts are asked for, of no rays";
 }
 
 }  // namespace

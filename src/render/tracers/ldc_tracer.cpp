@@ -8,18 +8,59 @@ LdcTracer::LdcTracer(const TracedWorld& world, const TracerChoice& choice)
     : device_(world.device),
       triangles_(world.triangles),
       instances_(world.instances),
-      cubes_(world.device, world.assembly, choice.cubes, choice.fixed_bodies(world.assembly),
-             smallest_scales(world.assembly, world.worlds)),
+      scales_(smallest_scales(world.assembly, world.worlds)),
+      first_choice_(choice.cubes),
+      fixed_bodies_(choice.fixed_bodies(world.assembly)),
       shown_(world.assembly.bodies.size()) {
+    assembly_.bodies = world.assembly.bodies;
     for (const Assembly::Instance& instance : world.assembly.instances) shown_[instance.body]++;
+    make(first_choice_);
 }
 
+void LdcTracer::make(const CubeChoice& choice) {
+    cubes_.reset();  // first, so that both never live at once
+    cubes_ = std::make_unique<SceneCubes>(device_, assembly_, choice, fixed_bodies_, scales_);
+}
+
+/// Throws Error where nothing smaller may be made.
+void LdcTracer::make_smaller(const NoRoom& error) {
+    const CubeChoice failed = choice();
+    if (no_room_.empty()) no_room_ = error.reason();
+    if (const std::optional<CubeChoice> smaller = smaller_than(failed)) return make(*smaller);
+    const std::string found = fmt::format("{}, for {} hits at N = {}{}", no_room_, name_of(first_choice_.hit),
+                                          largest_resolution(assembly_, first_choice_, fixed_bodies_),
+                                          failed == first_choice_ ? "" : ", and for what is smaller");
+    // The corners of the triangles are as many at any resolution.
+    const bool coarser_helps = failed.hit != HitTest::exact || !cubes_->cubes().has_patches() ||
+                               triangles_.count <= most_exact_triangles(device_);
+    if (failed.ldc != 0 && coarser_helps)
+        fail("{}: use {} auto, which takes what fits, or a smaller one", found, setting::ldc);
+    if (failed.hit == HitTest::exact) fail("{}: use {} auto, which takes what fits", found, setting::hit);
+    fail("{}: choose another {}, or {} reference, which renders without one", found, setting::device, setting::tracer);
+}
+
+/// The first choice that finds room for this moment: what was made for an earlier one is no reason for less.
 void LdcTracer::build(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) {
-    rebuilt_ = uint32_t(bodies().bodies().size()) - cubes_.fixed();
-    if (cubes_.build_fixed(commands, triangles_)) {
+    const bool deforms = cubes_->fixed() < bodies().bodies().size();
+    if (!fits_ && deforms && !no_room_.empty()) {
+        no_room_.clear();
+        make(first_choice_);
+    }
+    for (;; meter.redone++) {
+        try {
+            return build_once(commands, animate, meter);
+        } catch (const NoRoom& error) {
+            make_smaller(error);
+        }
+    }
+}
+
+void LdcTracer::build_once(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) {
+    rebuilt_ = uint32_t(bodies().bodies().size()) - cubes_->fixed();
+    if (cubes_->build_fixed(commands, triangles_)) {
         meter.add(commands);
-        meter.redone += cubes_.stats().redone;
-        rebuilt_ += cubes_.fixed();
+        meter.redone += cubes_->stats().redone;
+        rebuilt_ += cubes_->fixed();
     }
     for (;; meter.redone++) {
         animate();
@@ -35,7 +76,7 @@ void LdcTracer::build(Commands& commands, const std::function<void()>& animate, 
 }
 
 void LdcTracer::record_rebuild(Commands& commands) {
-    cubes_.record(commands, triangles_);
+    cubes_->record(commands, triangles_);
     instances_.record(commands, bodies());
 }
 
@@ -81,7 +122,12 @@ void LdcTracer::describe(Frame& frame) const {
 }
 
 void LdcTracer::describe(Commands& commands, TracerStats& stats) const {
-    stats.cubes = cubes_.stats();
+    stats.cubes = cubes_->stats();
+    stats.cubes.no_room = no_room_;
+    if (!no_room_.empty()) {
+        stats.cubes.no_room_hit = first_choice_.hit;
+        stats.cubes.no_room_resolution = largest_resolution(assembly_, first_choice_, fixed_bodies_);
+    }
     stats.bodies = bodies().download(commands);
     stats.shown = shown_;
     stats.rebuilt = rebuilt_;

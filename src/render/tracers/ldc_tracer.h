@@ -1,6 +1,9 @@
 // Rays in layered depth cubes.
 #pragma once
 
+#include <string>
+
+#include "base/error.h"
 #include "render/tracers/ray_tracer.h"
 
 namespace peelray {
@@ -9,30 +12,40 @@ class LdcTracer : public RayTracer {
   public:
     LdcTracer(const TracedWorld& world, const TracerChoice& choice);
 
-    const SceneCubes& cubes() const { return cubes_; }
+    /// Of the last build(): the next one may make others.
+    const SceneCubes& cubes() const { return *cubes_; }
 
     bool traces() const override { return true; }
     bool counts() const override { return true; }
-    const BodyTable& bodies() const override { return cubes_.cubes().table; }
+    const BodyTable& bodies() const override { return cubes_->cubes().table; }
     void pose(bool) override { fits_ = false; }
     void build(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) override;
     void record_rebuild(Commands& commands) override;
-    bool finish_rebuild(Commands& commands) override { return cubes_.finish(commands); }
+    bool finish_rebuild(Commands& commands) override { return cubes_->finish(commands); }
     void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) override;
     void shadow(Commands& commands, const ShadowRays& shadows) override;
     void describe(Frame& frame) const override;
     void describe(Commands& commands, TracerStats& stats) const override;
 
   private:
-    TracedScene traced() const { return {cubes_.cubes(), instances_, triangles_}; }
-    const CubeChoice& choice() const { return cubes_.choice(); }
+    TracedScene traced() const { return {cubes_->cubes(), instances_, triangles_}; }
+    const CubeChoice& choice() const { return cubes_->choice(); }
     /// World units; 0 of other hits.
     float tolerance() const { return choice().hit == HitTest::tolerance ? choice().tolerance : 0; }
+
+    void make(const CubeChoice& choice);
+    void make_smaller(const NoRoom& error);
+    void build_once(Commands& commands, const std::function<void()>& animate, FrameMeter& meter);
 
     Device& device_;
     const TriangleBuffers& triangles_;
     Instances& instances_;
-    SceneCubes cubes_;
+    Assembly assembly_;  ///< its bodies
+    std::vector<float> scales_;
+    const CubeChoice first_choice_;
+    const uint32_t fixed_bodies_;
+    std::unique_ptr<SceneCubes> cubes_;
+    std::string no_room_;          ///< why `cubes_` are not of the first choice; empty: they are
     std::vector<uint32_t> shown_;  ///< instances of each body
     bool fits_ = false;            ///< this moment's cubes have been built before: it is known that they find room
     uint32_t rebuilt_ = 0;
