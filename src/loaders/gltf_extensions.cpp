@@ -62,7 +62,8 @@ void choose_source(json& texture, Tally& ignored) {
         const std::optional<json> other = take(texture, name);
         if (!other || !other->contains("source")) continue;
         if (texture.contains("source"))
-            ++ignored[fmt::format("{{}} textures of {} shown by the other image that the file has for them", name)];
+            ++ignored[fmt::format("{{}} texture{{|s}} of {} shown by the other image that the file has for {{it|them}}",
+                                  name)];
         else
             texture["source"] = other->at("source");
     }

@@ -253,7 +253,8 @@ std::span<const uint8_t> GltfFile::view(int index) {
         } catch (const Error&) {
             if (!has_fallback(buffer)) throw;
             compressed.reset();
-            ++ignored_["{} compressed buffer views that cannot be decoded read from their uncompressed fallback"];
+            ++ignored_
+                ["{} compressed buffer view{|s} that cannot be decoded read from {its|their} uncompressed fallback"];
         }
     }
     if (compressed) return decompressed_[i];

@@ -24,11 +24,12 @@ class PrimitiveReader {
             draco_.emplace(loader_.file, source, from_, where_);
             if (!draco_->matches_accessors())
                 ++loader_.ignored
-                      ["{} primitives whose Draco data has other numbers of vertices or triangles than their "
+                      ["{} primitive{|s} whose Draco data has other numbers of vertices or triangles than {its|their} "
                        "accessors say: the data counts"];
         } catch (const Error&) {
             if (!has_fallback()) throw;
-            ++loader_.ignored["{} primitives whose Draco data cannot be decoded read from their uncompressed fallback"];
+            ++loader_.ignored
+                  ["{} primitive{|s} whose Draco data cannot be decoded read from {its|their} uncompressed fallback"];
         }
     }
 

@@ -189,7 +189,7 @@ TEST(GltfDraco, TheDataCountsBeforeTheFallback) {
     EXPECT_EQ(only_primitive(load(folder, with_fallback(large, stream))).triangles.size(), 18u);
     const Scene damaged = load(folder, with_fallback(large, stream.substr(0, stream.size() / 2)));
     EXPECT_EQ(only_primitive(damaged).triangles.size(), 32u);
-    EXPECT_MENTIONS(all_notes(damaged), "1 primitives whose Draco data cannot be decoded");
+    EXPECT_MENTIONS(all_notes(damaged), "1 primitive whose Draco data cannot be decoded");
 }
 
 TEST(GltfDraco, DamagedDataGivesOneLine) {

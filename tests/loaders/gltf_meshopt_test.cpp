@@ -269,7 +269,7 @@ TEST(GltfMeshopt, FallbackWhereTheDataIsDamaged) {
     gltf["buffers"][0]["uri"] = "plain.bin";
     const Scene scene = load(folder, gltf);
     EXPECT_EQ(only_primitive(scene).positions, only_primitive(load(folder, grid_file(grid))).positions);
-    EXPECT_MENTIONS(all_notes(scene), "1 compressed buffer views that cannot be decoded");
+    EXPECT_MENTIONS(all_notes(scene), "1 compressed buffer view that cannot be decoded");
     // Whoever does not need the fallback does not ask for it.
     json good = compressed_grid(grid);
     good["buffers"][0]["uri"] = "missing.bin";
