@@ -20,6 +20,7 @@ SHARED_SIZE(MediaStack, 8);
 
 /// What a ray meets at its hit, of media.
 struct MediaWall {
+    MediaStack before;  ///< the media that the ray arrives in
     MediaStack behind;  ///< the media that a ray is in that goes through
     uint from;          ///< material of the medium before the wall (MEDIUM_NONE: air)
     uint to;            ///< and of that behind it
@@ -27,7 +28,7 @@ struct MediaWall {
     float lift;         ///< how far from the wall rays start, world units; 0: as from any surface
     vec3 beside;        ///< tint of the other walls that coincide with the hit
 };
-SHARED_SIZE(MediaWall, 44);
+SHARED_SIZE(MediaWall, 52);
 
 #ifdef __cplusplus
 }  // namespace peelray

@@ -19,7 +19,6 @@ void mediaTrace(uint i, bool known, uvec2 own) {
     vec2 weights = m.hit.uv;
     if (m.hit.triangle != PEELRAY_MISS && !m.wall) weights = mediaWeights(ray, m.hit);
     hits[i] = Hit(m.hit.t, m.hit.triangle, m.hit.instance, weights.x, weights.y);
-    media[i] = m.before;
     media_walls[i] = m.at;
     if (media_crowded && !known) atomicAdd(queue[QUEUE_CROWDED], 1u);
 }

@@ -15,8 +15,7 @@ vec2 mediaWeights(PeelrayRay ray, PeelrayHit hit);
 struct MediaMeeting {
     PeelrayHit hit;
     Surface surface;    ///< of walls
-    bool wall;          ///< of a medium; else what is below is without meaning, but for `before` and `passed`
-    MediaStack before;  ///< the media that the ray was in on the last part of its way
+    bool wall;          ///< of a medium; else of what is below only `before`, `behind` and `passed` have a meaning
     MediaWall at;
     float beyond;       ///< where a ray that goes straight on meets the next surface at the earliest,
     uvec2 last;         ///< and instance and triangle that it must not meet
@@ -100,7 +99,7 @@ bool mediaIsWall(PeelrayHit hit) {
 
 /// The group is complete: what the ray meets there.
 void mediaClose(MediaGroup group, PeelrayRay ray, inout MediaMeeting m) {
-    const uint owner = mediaMeet(group, m.before, m.at);
+    const uint owner = mediaMeet(group, m.at.before, m.at);
     if (m.surface.offset > 0.0) m.beyond = max(m.beyond, m.hit.t + mediaReach(m.surface, m.hit.t, ray.direction));
     if (group.count == 1u || m.at.from == m.at.to) return;
     float error = m.surface.error;
@@ -120,9 +119,8 @@ void mediaClose(MediaGroup group, PeelrayRay ray, inout MediaMeeting m) {
 MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool known, PeelrayHit first) {
     MediaMeeting m;
     m.wall = false;
-    m.before = media;
     m.last = skip;
-    m.at = MediaWall(media, MEDIUM_NONE, MEDIUM_NONE, vec3(1), 0.0, vec3(1));
+    m.at = MediaWall(media, media, MEDIUM_NONE, MEDIUM_NONE, vec3(1), 0.0, vec3(1));
     MediaGroup group;
     group.count = 0u;
     PeelrayRay near = ray;
@@ -139,7 +137,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
             m.wall = wall;
             if (!wall) return m;
             m.surface = surfaceAt(hit.instance, hit.triangle, hit.uv, ray.direction);
-            mediaAdd(group, hit, m.surface, m.before);
+            mediaAdd(group, hit, m.surface, m.at.before);
             near = mediaNear(ray, hit, m.surface);
             looked = 0u;
             mediaForget(hit.triangle);
@@ -154,7 +152,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
                 m.wall = false;
                 return m;
             }
-            if (wall && parallel && mediaAdd(group, hit, beside, m.before)) {
+            if (wall && parallel && mediaAdd(group, hit, beside, m.at.before)) {
                 m.beyond = max(m.beyond, hit.t);
                 m.last = uvec2(hit.instance, hit.triangle);
                 if (!MEDIA_FORGETS) near.tmin = hit.t;
@@ -167,7 +165,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
         passed++;
         m.at.passed *= m.at.beside;
         m.at.beside = vec3(1);
-        m.before = m.at.behind;
+        m.at.before = m.at.behind;
         group.count = 0u;
         ray.tmin = m.beyond;
         near = ray;

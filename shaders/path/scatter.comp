@@ -32,11 +32,10 @@ BUFFER(writeonly, 24, vec3, shadow_light)
 BUFFER(readonly, 25, uvec2, visibility)
 BUFFER(readonly, 26, GpuDraw, draws)
 BUFFER(readonly, 27, vec4, split_sum)
-BUFFER(readonly, 28, MediaStack, media)
-BUFFER(readonly, 29, MediaWall, media_walls)
-BUFFER(readonly, 30, uint, media_ranks)
-BUFFER(writeonly, 31, MediaStack, next_media)
-BUFFER(writeonly, 32, MediaStack, shadow_media)
+BUFFER(readonly, 28, MediaWall, media_walls)
+BUFFER(readonly, 29, uint, media_ranks)
+BUFFER(writeonly, 30, MediaStack, next_media)
+BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind no more than 32 in a stage
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
@@ -216,7 +215,7 @@ bool startOf(uint i, out Ray ray, out RayState state, out Hit hit) {
 /// to `c`. `beside`: tint of the walls that coincide with it.
 Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
     const MediaWall wall = media_walls[i];
-    c.before = media[i];
+    c.before = wall.before;
     c.behind = wall.behind;
     beside = wall.beside;
     const uint medium = mediaMaterial(c.before);

@@ -38,10 +38,10 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
         const vec3 reflected = interfaceReflectance(m, face, clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
         share *= (1.0 - reflected) * mediaTint(s) * meeting.at.beside;
-        const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.before);
+        const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.at.before);
         if (medium != MEDIUM_NONE) share *= exp(-materials[medium].absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
         if (largest(share) < LEAST_WEIGHT) return vec3(0);
-        stack = meeting.wall ? meeting.at.behind : meeting.before;
+        stack = meeting.wall ? meeting.at.behind : meeting.at.before;
         ray.tmin = meeting.beyond;
         skip = meeting.last;
     }

@@ -30,7 +30,6 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           {"visibility", f.view.target.visibility},
                           {"draws", scene.draw_table},
                           {"split_sum", scene.split_sum},
-                          Binding::if_used("media", level.media),
                           Binding::if_used("media_walls", level.walls),
                           Binding::if_used("media_ranks", scene.media_ranks),
                           Binding::if_used("next_media", next.media),

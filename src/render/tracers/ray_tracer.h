@@ -37,7 +37,7 @@ struct ShadowRays {
 struct LayeredRays {
     RayQueue rays;
     const Buffer& hits;             ///< Hit each
-    const Buffer& media;            ///< MediaStack each: where the ray starts; then, where it arrives
+    const Buffer& media;            ///< MediaStack each: where the ray starts
     const Buffer& walls;            ///< MediaWall each: what is met there
     bool camera;                    ///< `hits` holds what the rays hit first, and they start in Frame::camera_media
     std::vector<Binding> surfaces;  ///< as in ShadowRays
