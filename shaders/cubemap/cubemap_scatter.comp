@@ -65,7 +65,7 @@ void main() {
         const GpuMaterial m = materials[s.material];
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, state, reflection, refraction);
+        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front), state, reflection, refraction);
         radiance += reflection.weight * seen(reflection, m.roughness);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).

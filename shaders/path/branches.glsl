@@ -28,18 +28,17 @@ float tracedPart(GpuMaterial m);
 void decide(inout Branch branch, vec3 path_weight, uint effect);
 
 /// Both branches of a surface, and what it sends by itself.
-vec3 scatterSurface(Surface s, vec3 incoming, RayState state, out Branch reflection, out Branch refraction) {
+vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const GpuMaterial m = materials[s.material];
     if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
     const vec3 view = -incoming;
     const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-    const bool transparent = transmits(m), leaving = leavesVolume(m, s.front);
-    const float eta = leaving ? 1.0 / m.ior : m.ior;
+    const bool transparent = transmits(m);
     const float alpha = m.roughness * m.roughness;
     const vec3 h = microfacet(s, view, alpha, state.seed);
     const float cosine = clamp(dot(view, h), 0.0, 1.0);
-    const vec3 dielectric = wallReflectance(m, cosine, leaving);
+    const vec3 dielectric = interfaceReflectance(m, face, cosine);
     const bool mirror = m.roughness < MIRROR_ROUGHNESS;
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = mirror ? state.medium & RAY_SEES_SUN : 0u;
@@ -72,10 +71,10 @@ vec3 scatterSurface(Surface s, vec3 incoming, RayState state, out Branch reflect
         if (thin)
             direction = incoming;
         else
-            passes = refractRay(incoming, h, eta, direction);
+            passes = refractRay(incoming, h, face.eta, direction);
         if (passes) {
             const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
-            const uint inside = thin ? medium : (leaving ? MEDIUM_NONE : s.material);
+            const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE);
             refraction = Branch(through, direction, inside | sun, false, 0.0);
             decide(refraction, state.weight, EFFECT_REFRACTION);
         }

@@ -50,8 +50,9 @@ struct Frame {
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
     uint draws;         ///< GpuDraw entries
+    uvec2 camera_media;  ///< MediaStack: what the camera is in
 };
-SHARED_SIZE(Frame, 300);
+SHARED_SIZE(Frame, 308);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

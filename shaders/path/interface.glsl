@@ -31,4 +31,22 @@ vec3 wallReflectance(GpuMaterial m, float cosine, bool leaving) {
     return transmits(m) && (m.flags & MATERIAL_THIN) != 0u ? 2.0 * face / (1.0 + face) : face;
 }
 
+/// A surface as a ray meets it.
+struct Interface {
+    float eta;     ///< index of refraction behind it over that before it
+    bool leaving;  ///< into air
+    bool between;  ///< two media, neither of them air
+};
+
+/// Of a body in air.
+Interface interfaceInAir(GpuMaterial m, bool front) {
+    const bool leaving = leavesVolume(m, front);
+    return Interface(leaving ? 1.0 / m.ior : m.ior, leaving, false);
+}
+
+/// Between two media by their indices; in air as the material says.
+vec3 interfaceReflectance(GpuMaterial m, Interface face, float cosine) {
+    return face.between ? vec3(fresnelDielectric(cosine, face.eta)) : wallReflectance(m, cosine, face.leaving);
+}
+
 #endif

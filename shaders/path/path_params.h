@@ -52,7 +52,8 @@ SHARED_SIZE(PathBranches, 32);
 #define QUEUE_FINISHED 23u        // workgroups of the pass that runs
 #define QUEUE_CUT_REFLECTION 24u  // rays that are not traced because the last level is reached
 #define QUEUE_CUT_REFRACTION 25u
-#define QUEUE_COUNTERS 26u
+#define QUEUE_CROWDED 26u  // rays in more media than a stack holds
+#define QUEUE_COUNTERS 27u
 /// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u

@@ -5,11 +5,13 @@
 #include "common/material.h"
 #include "common/ray.h"
 #include "path/frame.h"
+#include "path/media_params.h"
 #include "path/path_params.h"
 #include "view/view_params.h"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
+layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
@@ -30,7 +32,12 @@ BUFFER(writeonly, 24, vec3, shadow_light)
 BUFFER(readonly, 25, uvec2, visibility)
 BUFFER(readonly, 26, GpuDraw, draws)
 BUFFER(readonly, 27, vec4, split_sum)
+BUFFER(readonly, 28, MediaWall, media_walls)
+BUFFER(readonly, 29, uint, media_ranks)
+BUFFER(writeonly, 30, MediaStack, next_media)
+BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind no more than 32 in a stage
 #include "path/frame.glsl"
+#include "path/media.glsl"
 #include "path/branches.glsl"
 #include "path/lighting.glsl"
 #include "view/camera.glsl"
@@ -74,8 +81,9 @@ bool isCut(Branch branch, vec3 path_weight, uint effect) {
            largest(branch.weight * path_weight) >= LEAST_WEIGHT;
 }
 
-void emitRay(uint index, Branch branch, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
+void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
     if (index >= params.next_capacity) return;
+    if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
     next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
@@ -99,8 +107,9 @@ Ray skyRay(Surface s, uint seed) {
     return leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
 }
 
-void emitLight(uint index, Ray ray, SurfaceId from, vec3 light) {
+void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light) {
     if (index >= params.light_capacity) return;
+    if (layered) shadow_media[index] = stack;
     shadow_rays[index] = ray;
     shadow_skip[index] = from;
     shadow_light[index] = light;
@@ -135,16 +144,16 @@ vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, SurfaceId from, out ui
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from.
-void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, MediaStack stack, SurfaceId from, uint seed) {
     if ((frame[0].effects & EFFECT_SHADOW) != 0u)
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
             const vec3 light = arrivingLight(k, s, m, view, from, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), from, light * share);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), stack, from, light * share);
         }
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     const vec3 sky = skyLight(s, m, view);
-    if (sky != vec3(0)) emitLight(slot, skyRay(s, seed), from, sky * share);
+    if (sky != vec3(0)) emitLight(slot, skyRay(s, seed), stack, from, sky * share);
 }
 
 /// Makes room in the queues for the rays of the workgroup.
@@ -182,6 +191,7 @@ struct Scattering {
     Branch reflection, refraction;
     uint reflection_slot, refraction_slot, light_slot;  ///< among the rays of the workgroup
     uint light_rays;
+    MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
 };
@@ -194,21 +204,41 @@ bool startOf(uint i, out Ray ray, out RayState state, out Hit hit) {
         cameraStart(pixel, params.jitter, by_number, ray, state, hit);
         return true;
     }
-    if (i >= min(params.capacity, queue[params.level])) return false;
+    if (i >= (params.level > 0u ? min(params.capacity, queue[params.level]) : params.capacity)) return false;
     ray = rays[i];
     state = states[i];
     hit = hits[i];
     return true;
 }
 
+/// What surrounds the hit of ray `i` where media may overlap: returns what the surface is to the ray, and adds the media
+/// to `c`. `beside`: tint of the walls that coincide with it.
+Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
+    const MediaWall wall = media_walls[i];
+    c.before = wall.before;
+    c.behind = wall.behind;
+    beside = wall.beside;
+    const uint medium = mediaMaterial(c.before);
+    c.lost = wall.passed * transmittance(medium, t);
+    if (wall.lift > 0.0) c.surface.error = wall.lift;
+    const bool is_wall = mediaRank(c.surface.material) != MEDIA_NO_RANK;
+    return is_wall ? mediaInterface(wall) : interfaceInAir(materials[c.surface.material], c.surface.front);
+}
+
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
-void shadeHit(Ray ray, Hit hit, inout RayState state, inout Scattering c) {
+void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
     c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
-    c.lost = transmittance(state.medium, hit.t);
+    Interface face = interfaceInAir(materials[c.surface.material], c.surface.front);
+    vec3 beside = vec3(1);
+    if (layered)
+        face = mediaAround(i, hit.t, c, beside);
+    else
+        c.lost = transmittance(state.medium, hit.t);
     state.weight *= c.lost;
     c.path_weight = state.weight;
-    c.node.radiance = scatterSurface(c.surface, ray.direction, state, c.reflection, c.refraction);
+    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, c.reflection, c.refraction);
+    c.refraction.weight *= beside;
     // What is not traced sees the environment.
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
     if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, 0.0);
@@ -231,11 +261,11 @@ void emitBranches(uint i, Scattering c, uint seed) {
     PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
     if (c.reflection.traced) {
         children.child0 = group_first + c.reflection_slot;
-        emitRay(children.child0, c.reflection, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 0u, params.level)).x);
+        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 0u, params.level)).x);
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        emitRay(children.child1, c.refraction, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+        emitRay(children.child1, c.refraction, c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
     }
     branches[i] = children;
 }
@@ -252,11 +282,13 @@ void main() {
     Scattering c;
     c.node = PathNode(vec3(0), 0u, 0u);
     c.reflection = c.refraction = NO_BRANCH;
+    c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
     if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+    if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
     if (valid && hit.triangle != NO_TRIANGLE) {
         c.from = SurfaceId(hit.instance, hit.triangle);
-        shadeHit(ray, hit, state, c);
+        shadeHit(i, ray, hit, state, c);
     }
     barrier();
     if (lane == 0u) reserve();
@@ -269,7 +301,7 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materials[c.surface.material], -ray.direction, c.lost, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materials[c.surface.material], -ray.direction, c.lost, c.before, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

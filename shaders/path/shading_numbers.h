@@ -33,6 +33,22 @@
 
 // Rounding of a hit's position, of the largest coordinate of its triangle, in single precision.
 #define POSITION_ROUNDING 1e-6
+// Rounding of the distance along a ray at which it hits, of the distance, in single precision.
+#define DISTANCE_ROUNDING 2.5e-7
+// Walls of media that are parallel and at most this far apart, of the largest coordinate of the triangle, are one wall,
+// whose media light enters and leaves at once: as far as single precision may move either.
+#define WALLS_APART 2e-6
+// Cosine between the normals of two triangles from which on they count as parallel.
+#define WALLS_PARALLEL 0.9
+// Rays start this many times as far from such a wall, to be beyond all of it.
+#define WALLS_LIFT 1.5
+// Media that a ray may be in at once.
+#define MEDIA_TOGETHER 4
+// Walls that count as one at most, and walls in a row at which the medium stays the same that a ray passes without a
+// bounce.
+#define WALLS_TOGETHER 4
+#define WALLS_PASSED 32
+
 // Planar hits: a ray of unit direction starts at most this many times the height that it has to gain from its surface.
 #define FLATTEST_START 4.0
 // Slopes below this count as this.

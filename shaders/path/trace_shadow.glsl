@@ -1,6 +1,6 @@
 // What the passes that trace the queue of shadow rays share: whatever is in a ray's way takes its light. Bindings
 // SHADOW_FIRST_BINDING to SHADOW_FIRST_BINDING + 3. Include after PeelrayRay and PeelrayHit are defined; with SHADOW_THROUGH_GLASS
-// also after frame.glsl.
+// also after frame.glsl, with SHADOW_THROUGH_MEDIA after media_walk.glsl and the buffer shadow_media.
 #ifndef PEELRAY_TRACE_SHADOW_GLSL
 #define PEELRAY_TRACE_SHADOW_GLSL
 
@@ -18,15 +18,43 @@ BUFFER(readonly, SHADOW_FIRST_BINDING + 3, uint, queue)
 /// What the ray hits: the nearest or, with `any`, something; never the surface `skip`.
 PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any);
 
-#ifdef SHADOW_THROUGH_GLASS
+#if defined(SHADOW_THROUGH_MEDIA) || defined(SHADOW_THROUGH_GLASS)
 #include "path/interface.glsl"
+#endif
 
+#if defined(SHADOW_THROUGH_MEDIA)
+/// Share of the light that arrives along a ray that starts in the media `stack`: the tint of the glass in between.
+vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
+    const PeelrayHit unknown = PeelrayHit(0.0, PEELRAY_MISS, PEELRAY_MISS, vec2(0));
+    vec3 share = vec3(1);
+    for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
+        const MediaMeeting meeting = mediaFollow(ray, skip, stack, false, unknown);
+        const PeelrayHit hit = meeting.hit;
+        share *= meeting.at.passed;
+        if (hit.triangle == PEELRAY_MISS) return share;
+        const GpuMaterial m = materials[triangle_materials[hit.triangle]];
+        if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
+        const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction);
+        const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
+        const vec3 reflected = interfaceReflectance(m, face, clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
+        share *= (1.0 - reflected) * mediaTint(s) * meeting.at.beside;
+        const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.at.before);
+        if (medium != MEDIUM_NONE) share *= exp(-materials[medium].absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
+        if (largest(share) < LEAST_WEIGHT) return vec3(0);
+        stack = meeting.wall ? meeting.at.behind : meeting.at.before;
+        ray.tmin = meeting.beyond;
+        skip = meeting.last;
+    }
+    return vec3(0);
+}
+#elif defined(SHADOW_THROUGH_GLASS)
 /// Barycentric weights of a hit.
 vec2 shadowWeights(PeelrayRay ray, PeelrayHit hit);
 
 /// Share of the light that arrives along the ray: the tint of the glass in between.
 vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
     vec3 share = vec3(1);
+    float since = 0.0;  // the last wall of a volume
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
         const PeelrayHit hit = traceShadow(ray, skip, false);
         if (hit.triangle == PEELRAY_MISS) return share;
@@ -37,7 +65,8 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         const vec3 reflected = wallReflectance(m, clamp(-dot(ray.direction, s.normal), 0.0, 1.0), leavesVolume(m, s.front));
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
-        if (!thin && !s.front) share *= exp(-m.absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
+        if (!thin && !s.front) share *= exp(-m.absorption * (hit.t - since));
+        if (!thin) since = hit.t;
         if (largest(share) < LEAST_WEIGHT) return vec3(0);
         ray.tmin = hit.t;
         skip = uvec2(hit.instance, hit.triangle);
@@ -55,7 +84,9 @@ void shadowRay(uint i, uint capacity) {
 #ifdef COUNT_FIRST_BINDING
     countNothing();
 #endif
-#ifdef SHADOW_THROUGH_GLASS
+#if defined(SHADOW_THROUGH_MEDIA)
+    shadow_light[i] *= shadowShare(ray, skip, shadow_media[i]);
+#elif defined(SHADOW_THROUGH_GLASS)
     const vec3 share = shadowShare(ray, skip);
     if (share != vec3(1)) shadow_light[i] *= share;
 #else

@@ -146,7 +146,8 @@ Json rays_json(const RayCounts& rays) {
             {"refraction", rays.refraction},
             {"shadow", rays.shadow},
             {"ambient", rays.ambient},
-            {"cut", {{"reflection", rays.cut_reflection}, {"refraction", rays.cut_refraction}}}};
+            {"cut", {{"reflection", rays.cut_reflection}, {"refraction", rays.cut_refraction}}},
+            {"crowded", rays.crowded}};
 }
 
 static Json maps_json(const RenderStats& stats) {

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/infinity.h"
 #include "reference/optics.h"
 #include "reference/shader.h"
 #include "scene/encoding.h"
@@ -73,6 +74,9 @@ struct PathTracer::Impl {
     Albedos albedos;
     Surroundings surroundings;
     std::vector<Light> lights;
+    MediaRanks media;
+    const Scene& scene;
+    Moment placed;  ///< only what MediaPieces reads
 
     Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment)
         : geometry(geometry),
@@ -80,10 +84,20 @@ struct PathTracer::Impl {
           surfaces(scene, geometry),
           albedos(scene.materials.size(), surfaces),
           surroundings(environment),
-          lights(moment.lights) {
+          lights(moment.lights),
+          media(media_ranks(scene)),
+          scene(scene) {
+        placed.worlds = moment.worlds;
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
 
+    /// What the rays of a camera start in; those of an orthographic one have no one start, and start in air.
+    Media media_around(const Camera& camera) const {
+        Media start;
+        if (camera.orthographic_height > 0) return start;
+        for (const uint32_t material : MediaPieces(scene).around(scene, placed, camera.eye)) start.enter(material);
+        return start;
+    }
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
     void pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
                RayCounts& rays) const;
@@ -117,16 +131,20 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     glm::dvec4 sum(0);
     glm::dvec3 unlit(0);  // of it, what a display shows as it is
     for (uint32_t sample = 0; sample < s.spp; sample++) {
-        const Shader::Path path = camera_path(view, s, x, y, sample_position(sample));
+        Shader::Path path = camera_path(view, s, x, y, sample_position(sample));
+        path.media = context.start;
         Shader shader(context, sample);
-        const OracleHit hit = shader.hit(path);
-        const glm::dvec3 radiance = shader.radiance(path, hit);
+        const Meeting meeting = shader.hit(path);
+        const OracleHit& hit = meeting.hit;
+        const glm::dvec3 radiance = shader.radiance(path, meeting);
         // One bad number must not poison a pixel.
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
         if (usable && hit.hit() && surfaces.optics_of_triangle(hit.triangle).unlit) unlit += radiance;
-        if (s.aovs && sample == 0 && hit.hit()) aovs(picture, at, path, hit, context.box);
+        if (s.aovs && sample == 0 && hit.hit())
+            aovs(picture, at, path, bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit,
+                 context.box);
         rays += shader.rays();
     }
     sum /= double(s.spp);
@@ -167,8 +185,15 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     const float aspect = float(settings.width) / float(settings.height);
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
     const View view = make_view(settings.camera, aspect, box.lower, box.upper);
-    const RenderContext context{
-        impl_->bvh, impl_->surfaces, impl_->albedos, impl_->surroundings, impl_->lights, settings, box};
+    const RenderContext context{impl_->bvh,
+                                impl_->surfaces,
+                                impl_->albedos,
+                                impl_->surroundings,
+                                impl_->lights,
+                                impl_->media,
+                                settings,
+                                box,
+                                impl_->media_around(settings.camera)};
     Picture picture;
     prepare(picture, settings);
     Tiles tiles(settings);

@@ -64,22 +64,45 @@ glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view
 
 }  // namespace
 
-OracleHit Shader::hit(const Path& path) const {
-    return context_.bvh.nearest({path.origin, 0, path.direction, infinity}, path.skip).hit;
+Meeting Shader::hit(const Path& path) const {
+    return walk().next({path.origin, 0, path.direction, infinity}, path.skip, path.media);
+}
+
+double Shader::index_of(uint32_t medium) const {
+    return medium == Media::air ? 1 : context_.surfaces.optics(medium).ior;
+}
+
+double Shader::relative_index(const Meeting& meeting, const Surface& s) const {
+    const Optics& m = context_.surfaces.optics(s.material);
+    if (!meeting.wall) return m.leaves(s.front) ? 1 / m.ior : m.ior;
+    return index_of(meeting.to) / index_of(meeting.from);
+}
+
+/// Between two media by their indices; in air as the material says.
+glm::dvec3 Shader::reflectance_at(const Meeting& meeting, const Surface& s, double cosine) const {
+    const Optics& m = context_.surfaces.optics(s.material);
+    if (meeting.wall && meeting.from != Media::air && meeting.to != Media::air)
+        return glm::dvec3(fresnel_dielectric(cosine, relative_index(meeting, s)));
+    return m.wall_reflectance(cosine, meeting.wall ? meeting.to == Media::air : m.leaves(s.front));
 }
 
 glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
-    return medium == none ? glm::dvec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
+    return medium == Media::air ? glm::dvec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
 }
 
-glm::dvec3 Shader::radiance(const Path& arriving, const OracleHit& hit) {
-    if (!hit.hit()) return context_.surroundings.seen(arriving.direction, arriving.sees_sun);
-    const Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction);
-    const glm::dvec3 kept = transmittance(arriving.medium, hit.t);
+glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
+    const OracleHit& hit = meeting.hit;
+    if (!hit.hit()) return meeting.passed * context_.surroundings.seen(arriving.direction, arriving.sees_sun);
+    Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction);
+    surface.error = std::max(surface.error, meeting.lift);
+    const glm::dvec3 kept = meeting.passed * transmittance(meeting.before.counting(context_.media), hit.t);
     Path path = arriving;
     path.weight *= kept;
-    const Scattered scattered = scatter(surface, path);
+    path.media = meeting.before;
+    const Scattered scattered = scatter(surface, path, meeting);
     glm::dvec3 sum = scattered.radiance;
+    // The reference goes on in all of them; the GPU's rays do not.
+    if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
     if (scattered.reflection.traced) rays_.reflection++;
     if (scattered.refraction.traced) rays_.refraction++;
     rays_.cut_reflection += is_cut(scattered.reflection, path, context_.settings.reflection);
@@ -100,7 +123,7 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.direction = branch.direction;
     next.skip = triangle;
     next.weight = path.weight * branch.weight;
-    next.medium = branch.medium;
+    next.media = branch.media;
     next.sees_sun = branch.sees_sun;
     next.seed = hash3({path.seed, which, path.level}).x;
     next.level = path.level + 1;
@@ -127,7 +150,7 @@ glm::dvec3 Shader::half_vector(const Surface& s, const glm::dvec3& view, double 
 }
 
 /// Both branches of a surface, and what it sends by itself (docs/frame.md section 4).
-Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
+Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meeting& meeting) const {
     const Optics& m = context_.surfaces.optics(s.material);
     const PictureSettings& settings = context_.settings;
     Scattered out;
@@ -136,11 +159,11 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
         return out;
     }
     const glm::dvec3 view = -path.direction;
-    const bool transmits = m.transmits(), leaving = m.leaves(s.front), mirror = m.roughness < MIRROR_ROUGHNESS;
-    const double eta = leaving ? 1 / m.ior : m.ior, alpha = m.roughness * m.roughness;
+    const bool transmits = m.transmits(), mirror = m.roughness < MIRROR_ROUGHNESS;
+    const double alpha = m.roughness * m.roughness;
     const glm::dvec3 h = half_vector(s, view, alpha, path.seed);
     const double cosine = std::clamp(glm::dot(view, h), 0.0, 1.0);
-    const glm::dvec3 dielectric = m.wall_reflectance(cosine, leaving);
+    const glm::dvec3 dielectric = reflectance_at(meeting, s, cosine);
 
     Branch& reflection = out.reflection;
     const glm::dvec3 reflected = path.direction - 2 * glm::dot(path.direction, h) * h;
@@ -154,7 +177,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
                                       : glm::mix(means.dielectric, means.metal(s.base_color), m.metallic);
     }
     reflection.direction = above_surface(reflected, s.geometric);
-    reflection.medium = path.medium;
+    reflection.media = meeting.before;
     reflection.sees_sun = mirror && path.sees_sun;
     reflection.traced = is_traced(reflection, path, settings.reflection);
     reflection.blur = settings.spp > 1 ? 0 : m.roughness;
@@ -169,14 +192,16 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path) const {
     }
     if (!transmits) return out;
 
-    const auto direction = m.thin ? std::optional(path.direction) : refract_ray(path.direction, h, eta);
+    const auto direction =
+        m.thin ? std::optional(path.direction) : refract_ray(path.direction, h, relative_index(meeting, s));
     if (direction) {
         Branch& refraction = out.refraction;
         refraction.weight = (1.0 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
         refraction.direction = *direction;
-        refraction.medium = m.thin ? path.medium : leaving ? none : s.material;
+        refraction.media = meeting.behind;
         refraction.sees_sun = mirror && path.sees_sun;
         refraction.traced = is_traced(refraction, path, settings.refraction);
+        refraction.weight *= meeting.beside;
     }
     return out;
 }
@@ -202,7 +227,7 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
         const glm::dvec3 start = s.lit_start();
         const bool far = light.kind == Light::Kind::directional;
         const double reach = far ? infinity : glm::dot(glm::dvec3(light.position) - start, direction);
-        sum += reflected * visibility(start, direction, reach, triangle);
+        sum += reflected * visibility(start, direction, reach, triangle, path.media);
     }
     return sum + sky_light(s, triangle, path);
 }
@@ -224,29 +249,32 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     const glm::dvec3 up = s.normal * std::sqrt(std::max(0.0, 1 - random.x));
     const glm::dvec3 direction = above_surface(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up, s.geometric);
     rays_.ambient++;
-    return light * visibility(s.start(s.shadow_start, direction), direction, infinity, triangle);
+    return light * visibility(s.start(s.shadow_start, direction), direction, infinity, triangle, path.media);
 }
 
 /// Share of the light that arrives from `distance` away: 0 or 1, or the tint of the glass in between.
-glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance,
-                              uint32_t triangle) const {
+glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance, uint32_t triangle,
+                              Media media) const {
     glm::dvec3 share(1);
     uint32_t skip = triangle;
     double from = 0;
     for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
-        const OracleHit hit = context_.bvh.nearest({start, from, direction, distance}, skip, true).hit;
+        Meeting meeting = walk().next({start, from, direction, distance}, skip, media, true);
+        const OracleHit& hit = meeting.hit;
+        share *= meeting.passed;
         if (!hit.hit()) return share;
         const Optics& m = context_.surfaces.optics_of_triangle(hit.triangle);
         if (!m.transmits()) return glm::dvec3(0);
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
         const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        share *=
-            (1.0 - m.wall_reflectance(cosine, m.leaves(s.front))) * (1 - m.metallic) * m.transmission * s.base_color;
+        share *= (1.0 - reflectance_at(meeting, s, cosine)) * (1 - m.metallic) * m.transmission * s.base_color *
+                 meeting.beside;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
-        if (!m.thin && !s.front) share *= glm::exp(-m.absorption * (hit.t - from));
+        share *= transmittance(meeting.wall ? meeting.from : meeting.before.counting(context_.media), hit.t - from);
         if (largest(share) < LEAST_WEIGHT) return glm::dvec3(0);
-        from = hit.t;
-        skip = hit.triangle;
+        from = meeting.beyond;
+        skip = meeting.last;
+        media = std::move(meeting.behind);
     }
     return glm::dvec3(0);
 }

@@ -5,6 +5,7 @@
 
 #include "reference/albedos.h"
 #include "reference/bvh.h"
+#include "reference/media.h"
 #include "reference/surface.h"
 #include "scene/picture.h"
 
@@ -17,8 +18,10 @@ struct RenderContext {
     const Albedos& albedos;
     const Surroundings& surroundings;
     const std::vector<Light>& lights;
+    const MediaRanks& media;
     const PictureSettings& settings;
-    Box box;  ///< of the scene
+    Box box;      ///< of the scene
+    Media start;  ///< what the camera is in
 };
 
 /// Follows the rays of one sample of one pixel.
@@ -30,7 +33,7 @@ class Shader {
         glm::dvec3 origin, direction;  ///< direction: unit
         uint32_t skip = none;          ///< triangle that does not count: the one where the ray starts
         glm::dvec3 weight{1};          ///< share of the pixel's light that comes along the ray
-        uint32_t medium = none;        ///< material whose volume the ray is in
+        Media media;                   ///< what the ray is in at its start
         bool sees_sun = true;
         uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
         uint32_t level = 0;
@@ -38,10 +41,10 @@ class Shader {
 
     Shader(const RenderContext& context, uint32_t sample) : context_(context), sample_(sample) {}
 
-    /// What the path's ray hits.
-    OracleHit hit(const Path& path) const;
-    /// Light that comes back along the path from its hit.
-    glm::dvec3 radiance(const Path& path, const OracleHit& hit);
+    /// What the path's ray meets.
+    Meeting hit(const Path& path) const;
+    /// Light that comes back along the path from what it meets.
+    glm::dvec3 radiance(const Path& path, const Meeting& meeting);
     /// The rays traced so far, camera rays excepted.
     const RayCounts& rays() const { return rays_; }
 
@@ -49,7 +52,7 @@ class Shader {
     struct Branch {
         glm::dvec3 weight{0};  ///< share of the hit's light; 0: no branch
         glm::dvec3 direction{0, 0, 1};
-        uint32_t medium = none;
+        Media media;
         bool sees_sun = false;
         bool traced = false;
         double blur = 0;  ///< roughness for the environment, if not traced
@@ -59,7 +62,8 @@ class Shader {
         glm::dvec3 radiance{0};  ///< what the surface sends by itself
     };
 
-    Scattered scatter(const Surface& surface, const Path& path) const;
+    MediaWalk walk() const { return {context_.bvh, context_.surfaces, context_.media}; }
+    Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
     glm::dvec3 half_vector(const Surface& surface, const glm::dvec3& view, double alpha, uint32_t seed) const;
     bool is_traced(const Branch& branch, const Path& path, bool effect) const;
     bool is_cut(const Branch& branch, const Path& path, bool effect) const;
@@ -68,8 +72,12 @@ class Shader {
 
     glm::dvec3 direct_light(const Surface& surface, uint32_t triangle, const Path& path);
     glm::dvec3 sky_light(const Surface& surface, uint32_t triangle, const Path& path);
-    glm::dvec3 visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance,
-                          uint32_t triangle) const;
+    glm::dvec3 visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance, uint32_t triangle,
+                          Media media) const;
+    double index_of(uint32_t medium) const;
+    /// Index behind a surface over that before it, and its dielectric part's reflectance.
+    double relative_index(const Meeting& meeting, const Surface& surface) const;
+    glm::dvec3 reflectance_at(const Meeting& meeting, const Surface& surface, double cosine) const;
     glm::dvec3 transmittance(uint32_t medium, double distance) const;
 
     const RenderContext& context_;

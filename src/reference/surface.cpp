@@ -63,10 +63,10 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     };
     Surface s;
     s.position = interpolate(p);
-    s.error = 0;
-    for (const glm::dvec3& corner :
-         p)  // some thousand times the rounding of a sum of three, which counts in the corners
-        s.error = std::max(s.error, 1e-12 * std::max({std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)}));
+    s.extent = 0;
+    for (const glm::dvec3& corner : p)
+        s.extent = std::max({s.extent, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    s.error = 1e-12 * s.extent;  // some thousand times the rounding of a sum of three, which counts in the corners
     s.material = geometry_.materials[triangle];
     const glm::dvec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double size = glm::length(area);

@@ -38,8 +38,9 @@ struct Surface {
     glm::dvec3 normal;        ///< interpolated, unit, on the ray's side
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
     glm::dvec3 base_color;
-    double error;  ///< bound on the position's rounding error, world units
-    bool front;    ///< the ray comes from the side that the normals point to
+    double extent;  ///< the largest coordinate of the triangle
+    double error;   ///< bound on the position's rounding error, world units
+    bool front;     ///< the ray comes from the side that the normals point to
     uint32_t material;
 
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
@@ -60,6 +61,7 @@ class Surfaces {
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
     const Optics& optics(uint32_t material) const { return optics_[material]; }
+    uint32_t material_of_triangle(uint32_t triangle) const { return geometry_.materials[triangle]; }
     const Optics& optics_of_triangle(uint32_t triangle) const { return optics_[geometry_.materials[triangle]]; }
 
   private:

@@ -38,6 +38,8 @@ struct FrameState {
         if (!tracer->traces()) return 0;
         return (settings.shadow ? uint32_t(scene.light_list.size()) : 0) + (settings.ambient ? 1 : 0);
     }
+    /// Are rays traced that may be in several media at once?
+    bool layered() const { return tracer->traces() && (scene.layered || constants.camera_media != glm::uvec2(0)); }
     uint64_t pixels() const { return uint64_t(settings.width) * settings.height; }
 };
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "base/error.h"
+#include "path/media_params.h"
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
@@ -70,7 +72,9 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
       placed_(assembly.instances),
       fixed_bodies_(assembly.fixed),
       deformer_(device, scene, moment, assembly),
-      generators_(device, scene, assembly) {
+      generators_(device, scene, assembly),
+      media_order_(peelray::media_ranks(scene)),
+      media_pieces_(scene) {
     Commands commands(device);
     std::vector<GpuDraw> table;
     for (const DrawRange& draw : draws) {
@@ -91,6 +95,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
         has_unlit |= used[i] && scene.materials[i].unlit;
     }
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
+    upload_media(commands);
     environment = upload(device, commands, "environment map", env.texels);
     split_sum = Buffer(device, "split sum", sizeof kSplitSum);
     commands.upload(split_sum, std::span<const float>(kSplitSum[0], sizeof kSplitSum / sizeof(float)));
@@ -115,6 +120,7 @@ uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& mo
     deformer_.pose(commands, scene, moment, triangles.triangles);
     generators_.pose(commands, scene, moment.generated_time);
     upload_lights(commands, moment.lights);
+    layered = media_ranks && media_pieces_.may_overlap(scene, moment);
     return moved;
 }
 
@@ -122,6 +128,27 @@ void GpuScene::record_animation(Commands& commands, const BodyTable& bodies) {
     bodies.record_emptying(commands, fixed_bodies_);
     deformer_.record(commands, bodies, triangles, normals);
     generators_.record(commands, bodies, triangles, normals, instances);
+}
+
+/// Where there are more media than a stack has numbers for, they do not overlap.
+void GpuScene::upload_media(Commands& commands) {
+    const MediaRanks& ranks = media_order_;
+    if (ranks.materials.empty() || ranks.materials.size() > MEDIA_MOST_RANKS) return;
+    std::vector<uint32_t> words = {uint32_t(ranks.of_material.size())};
+    words.insert(words.end(), ranks.of_material.begin(), ranks.of_material.end());
+    words.insert(words.end(), ranks.materials.begin(), ranks.materials.end());
+    media_ranks = upload(device_, commands, "ranks of media", words);
+}
+
+MediaStack GpuScene::media_at(const Scene& scene, const Moment& moment, const glm::vec3& point) const {
+    if (!media_ranks) return {};
+    std::map<uint32_t, uint32_t> counts;  // by rank
+    for (const uint32_t material : media_pieces_.around(scene, moment, point))
+        counts[media_order_.of_material[material]]++;
+    uint32_t entries[4] = {}, used = 0;
+    for (const auto& [rank, count] : counts)
+        if (used < 4) entries[used++] = (rank + 1) << 4 | std::min(count, 15u);
+    return {entries[0] | entries[1] << 16, entries[2] | entries[3] << 16};
 }
 
 void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) {
@@ -137,7 +164,7 @@ void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) 
 uint64_t GpuScene::bytes() const {
     uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
     for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
-                                 &lights, &environment, &split_sum, &draw_table})
+                                 &lights, &environment, &split_sum, &draw_table, &media_ranks})
         sum += buffer->bytes();
     return sum;
 }

@@ -6,9 +6,11 @@
 #include "ldc/instances.h"
 #include "ldc/triangle_buffers.h"
 #include "path/frame.h"
+#include "path/media_params.h"
 #include "render/deformer.h"
 #include "render/generators.h"
 #include "scene/environment.h"
+#include "scene/media.h"
 
 namespace peelray {
 
@@ -30,6 +32,8 @@ class GpuScene {
     Buffer lights, environment;
     Buffer split_sum;                  ///< the table of path/split_sum.h
     bool has_glass = false;            ///< some triangle lets light through
+    bool layered = false;              ///< rays may be in several media at once (MediaPieces), at this moment
+    Buffer media_ranks;                ///< uint32: number of materials, rank by material, material by rank
     bool has_unlit = false;            ///< some triangle is to be shown as it is
     std::vector<GpuLight> light_list;  ///< what `lights` holds
     Instances instances;
@@ -41,6 +45,9 @@ class GpuScene {
     /// instances moved; those that are placed on the device all count.
     uint32_t pose(Commands& commands, const Scene& scene, const Moment& moment);
 
+    /// The media that a point is in.
+    MediaStack media_at(const Scene& scene, const Moment& moment, const glm::vec3& point) const;
+
     /// Records what computes the vertices of this moment.
     void record_animation(Commands& commands, const BodyTable& bodies);
 
@@ -50,6 +57,7 @@ class GpuScene {
     void describe(Frame& frame) const;
 
   private:
+    void upload_media(Commands& commands);
     void upload_lights(Commands& commands, const std::vector<Light>& own);
 
     Device& device_;
@@ -58,6 +66,8 @@ class GpuScene {
     uint32_t fixed_bodies_;
     Deformer deformer_;
     Generators generators_;
+    MediaRanks media_order_;
+    MediaPieces media_pieces_;
     std::vector<GpuLight> environment_lights_;
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0;

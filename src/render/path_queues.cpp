@@ -54,7 +54,22 @@ void PathQueues::allocate_lights(uint64_t capacity) {
     ensure_size(device_, lights_.light, "light of shadow rays", capacity * sizeof(glm::vec3));
 }
 
-void PathQueues::prepare(uint32_t pixels, uint32_t levels, bool branching, uint32_t lights) {
+/// Room for the media of all rays that there is room for.
+void PathQueues::allocate_media() {
+    if (!layered_) return;
+    for (size_t i = 0; i < levels_.size(); i++) {
+        PathLevel& level = levels_[i];
+        ensure_size(device_, level.media, fmt::format("media of bounce {}", i),
+                    uint64_t(level.capacity) * sizeof(MediaStack));
+        ensure_size(device_, level.walls, fmt::format("walls of media of bounce {}", i),
+                    uint64_t(level.capacity) * sizeof(MediaWall));
+    }
+    ensure_size(device_, lights_.media, "media of shadow rays", uint64_t(lights_.capacity) * sizeof(MediaStack));
+}
+
+void PathQueues::prepare(const Needs& needs) {
+    const auto [pixels, levels, branching, lights, layered] = needs;
+    layered_ = layered;
     // One level more than is traced: the deepest level's shader binds a next level that it never writes.
     levels_.resize(std::max<size_t>(levels_.size(), levels + 1));
     allocate(levels_[0], 0, pixels);
@@ -63,6 +78,8 @@ void PathQueues::prepare(uint32_t pixels, uint32_t levels, bool branching, uint3
     allocate(levels_[levels], levels, 64);
     // One ray a pixel is seldom exceeded; who has many lights finds out.
     allocate_lights(lights > 0 ? std::max(1024u, pixels) : 64);
+    if (layered) keep_camera_rays();
+    allocate_media();
 }
 
 bool PathQueues::finish() {
@@ -72,16 +89,19 @@ bool PathQueues::finish() {
         fits = false;
         allocate(levels_[i], i, with_room_to_grow(count(i)));
     }
-    if (count(QUEUE_LIGHT) <= lights_.capacity) return fits;
-    allocate_lights(with_room_to_grow(count(QUEUE_LIGHT)));
-    return false;
+    if (count(QUEUE_LIGHT) > lights_.capacity) {
+        fits = false;
+        allocate_lights(with_room_to_grow(count(QUEUE_LIGHT)));
+    }
+    if (!fits) allocate_media();
+    return fits;
 }
 
 uint64_t PathQueues::bytes() const {
-    uint64_t sum = lights_.rays.bytes() + lights_.skip.bytes() + lights_.light.bytes();
+    uint64_t sum = lights_.rays.bytes() + lights_.skip.bytes() + lights_.light.bytes() + lights_.media.bytes();
     for (const PathLevel& level : levels_)
         sum += level.rays.bytes() + level.states.bytes() + level.skip.bytes() + level.hits.bytes() +
-               level.nodes.bytes() + level.branches.bytes();
+               level.nodes.bytes() + level.branches.bytes() + level.media.bytes() + level.walls.bytes();
     return sum;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu/buffer.h"
+#include "path/media_params.h"
 #include "path/path_params.h"
 
 namespace peelray {
@@ -14,6 +15,7 @@ struct PathLevel {
     uint32_t capacity = 0;
     Buffer rays, states, skip, hits;  ///< of level 0 only where they are kept (PathQueues::keep_camera_rays)
     Buffer nodes, branches;
+    Buffer media, walls;  ///< MediaStack and MediaWall each; only while media may overlap
 };
 
 /// Shadow rays; those of a node follow each other.
@@ -21,6 +23,7 @@ struct LightQueue {
     uint32_t capacity = 0;
     Buffer rays, skip;
     Buffer light;  ///< vec3 each: what arrives along the ray; before it is traced, what may
+    Buffer media;  ///< MediaStack each, where the ray starts; only while media may overlap
 };
 
 /// Makes room on demand: level 0 for a band's pixels, the others by what the last band needed.
@@ -28,9 +31,15 @@ class PathQueues {
   public:
     explicit PathQueues(Device& device);
 
-    /// Room for `pixels` camera rays and `levels` levels in all; `branching`: hits may start two rays. `lights`: shadow
-    /// rays that a hit may start.
-    void prepare(uint32_t pixels, uint32_t levels, bool branching, uint32_t lights);
+    /// What there is to be room for.
+    struct Needs {
+        uint32_t pixels = 0;     ///< camera rays
+        uint32_t levels = 1;     ///< in all
+        bool branching = false;  ///< hits may start two rays
+        uint32_t lights = 0;     ///< shadow rays that a hit may start
+        bool layered = false;    ///< media may overlap; level 0's rays are then kept as well
+    };
+    void prepare(const Needs& needs);
 
     /// Room for level 0's rays and hits, for passes that want them in buffers.
     void keep_camera_rays();
@@ -61,12 +70,14 @@ class PathQueues {
 
   private:
     void allocate(PathLevel& level, uint32_t index, uint32_t capacity);
+    void allocate_media();
     void allocate_lights(uint64_t capacity);
 
     Device& device_;
     std::vector<PathLevel> levels_;
     LightQueue lights_;
     uint32_t most_lights_;
+    bool layered_ = false;
     Buffer counters_, readback_;
 };
 

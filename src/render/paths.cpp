@@ -9,7 +9,8 @@ void record_scatter(FrameState& f, const LevelParams& p) {
     PathQueues& queues = f.queues;
     const GpuScene& scene = f.scene;
     const PathLevel &level = queues.level(p.level), &next = queues.level(p.level + 1);
-    const bool camera = p.level == 0;  // which makes its rays itself
+    const bool layered = f.layered();
+    const bool camera = p.level == 0 && !layered;  // which makes its rays itself
     const std::vector<Binding> bindings =
         surface_bindings(scene, f.view.target.frame,
                          {{"environment", scene.environment},
@@ -28,9 +29,14 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           {"shadow_light", queues.lights().light},
                           {"visibility", f.view.target.visibility},
                           {"draws", scene.draw_table},
-                          {"split_sum", scene.split_sum}});
-    const Pass& pass = f.device.pass("scatter", {{"camera", camera}, {"by_number", camera && f.view.by_number()}});
-    if (camera)
+                          {"split_sum", scene.split_sum},
+                          Binding::if_used("media_walls", level.walls),
+                          Binding::if_used("media_ranks", scene.media_ranks),
+                          Binding::if_used("next_media", next.media),
+                          Binding::if_used("shadow_media", queues.lights().media)});
+    const Pass& pass = f.device.pass(
+        "scatter", {{"camera", camera}, {"by_number", camera && f.view.by_number()}, {"layered", layered}});
+    if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else
         f.commands.run_indirect(pass, bindings, p, queues.counters(), PathQueues::groups_offset(p.level));
@@ -49,12 +55,32 @@ RayQueue queue_of(const PathQueues& queues, const Buffer& rays, const Buffer& sk
             PathQueues::launch_offset(groups)};
 }
 
+/// What shading reads beside triangles and instances.
+std::vector<Binding> surfaces_of(const FrameState& f) {
+    std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
+    surfaces.push_back({"normals", f.scene.normals});
+    surfaces.push_back({"frame", f.view.target.frame});
+    surfaces.push_back(Binding::if_used("media_ranks", f.scene.media_ranks));
+    return if_used(surfaces);
+}
+
 void record_trace(FrameState& f, uint32_t level) {
     const PathLevel& rays = f.queues.level(level);
     RayQueue queue = queue_of(f.queues, rays.rays, rays.skip, rays.capacity, level, level);
     std::optional<CountBuffers> counting;
     if (f.counter) queue.counting = &counting.emplace(f.counter->level(level));
-    f.tracer->trace(f.commands, queue, rays.hits, {});
+    if (f.layered())
+        f.tracer->trace_layered(f.commands, {queue, rays.hits, rays.media, rays.walls, false, surfaces_of(f)});
+    else
+        f.tracer->trace(f.commands, queue, rays.hits, {});
+}
+
+/// The camera's rays where media may overlap: in buffers, and followed through walls that are none to them.
+void record_camera_walls(FrameState& f, const LevelParams& p) {
+    record_primary(f.commands, f.device, f.scene, f.view.target, f.queues, p, f.view.by_number());
+    const PathLevel& rays = f.queues.level(0);
+    f.tracer->trace_layered(f.commands, {RayQueue{rays.rays, nullptr, p.capacity}, rays.hits, rays.media, rays.walls,
+                                         true, surfaces_of(f)});
 }
 
 void record_shadows(FrameState& f) {
@@ -62,10 +88,8 @@ void record_shadows(FrameState& f) {
     RayQueue queue = queue_of(f.queues, lights.rays, lights.skip, lights.capacity, QUEUE_LIGHT, QUEUE_GROUPS_LIGHT);
     std::optional<CountBuffers> counting;
     if (f.counter) queue.counting = &counting.emplace(f.counter->lights());
-    std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
-    surfaces.push_back({"normals", f.scene.normals});
-    surfaces.push_back({"frame", f.view.target.frame});
-    f.tracer->shadow(f.commands, {queue, lights.light, f.scene.has_glass, if_used(surfaces)});
+    f.tracer->shadow(f.commands,
+                     {queue, lights.light, f.scene.has_glass, f.layered() ? &lights.media : nullptr, surfaces_of(f)});
 }
 
 void record_gather(FrameState& f, const LevelParams& p) {
@@ -97,8 +121,12 @@ LevelParams level_params(const FrameState& f, uint32_t level, uint32_t sample, u
 
 void record_paths(FrameState& f, uint32_t sample, uint32_t first_row) {
     for (uint32_t level = 0; level <= f.last_level; level++) {
-        if (level > 0) record_trace(f, level);
-        record_scatter(f, level_params(f, level, sample, first_row));
+        const LevelParams p = level_params(f, level, sample, first_row);
+        if (level > 0)
+            record_trace(f, level);
+        else if (f.layered())
+            record_camera_walls(f, p);
+        record_scatter(f, p);
     }
     if (f.lights_per_hit() > 0) record_shadows(f);
     for (uint32_t level = f.last_level; level-- > 1;) record_gather(f, level_params(f, level, sample, first_row));

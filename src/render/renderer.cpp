@@ -153,11 +153,6 @@ void Renderer::Impl::prepare_tracer() {
 /// Bands of the picture, and its constants.
 void Renderer::Impl::prepare_view() {
     const RenderSettings& settings = f.settings;
-    // A band's largest queue entries are rays and branches; bands keep each queue below what the device binds, with
-    // room to grow.
-    const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (2 * sizeof(Ray)),
-                                    uint64_t(f.queues.most_lights()) / std::max(f.lights_per_hit(), 1u)});
-    f.bands = Bands(settings.width, settings.height, most);
     f.last_level = f.tracer->traces() ? settings.bounces : 0;
     box = settings.bounds ? *settings.bounds : bounds(source, moment);
     Frame& frame = f.constants = {};
@@ -165,6 +160,17 @@ void Renderer::Impl::prepare_view() {
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     f.tracer->describe(frame);
+    // Orthographic rays have no one start.
+    if (settings.camera.orthographic_height <= 0) {
+        const MediaStack stack = f.scene.media_at(source, moment, settings.camera.eye);
+        frame.camera_media = {stack.low, stack.high};
+    }
+    // A band's largest queue entries are rays and branches, or the walls of media; bands keep each queue below what the
+    // device binds, with room to grow.
+    const uint64_t entry = f.layered() ? sizeof(MediaWall) : sizeof(Ray);
+    const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (2 * entry),
+                                    uint64_t(f.queues.most_lights()) / std::max(f.lights_per_hit(), 1u)});
+    f.bands = Bands(settings.width, settings.height, most);
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = f.bands.row_pixels();
@@ -183,8 +189,8 @@ void Renderer::Impl::prepare_maps() {
 
 void Renderer::Impl::prepare_queues() {
     const uint32_t face = f.maps ? f.maps->face() : 0;
-    f.queues.prepare(std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.scene.has_glass,
-                     f.lights_per_hit());
+    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.scene.has_glass,
+                      f.lights_per_hit(), f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
 }
 
@@ -279,6 +285,7 @@ void Renderer::Impl::count_rays() {
     rays.ambient += queues.count(QUEUE_AMBIENT);
     rays.cut_reflection += queues.count(QUEUE_CUT_REFLECTION);
     rays.cut_refraction += queues.count(QUEUE_CUT_REFRACTION);
+    rays.crowded += queues.count(QUEUE_CROWDED);
 }
 
 /// Post passes change the picture in place: not before its last band is known to have fitted.

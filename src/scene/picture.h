@@ -46,6 +46,8 @@ struct RayCounts {
     uint64_t primary = 0, reflection = 0, refraction = 0, shadow = 0, ambient = 0;
     /// Not traced, and not among those above: would have been, if `bounces` did not end there.
     uint64_t cut_reflection = 0, cut_refraction = 0;
+    /// Reflected and refracted ones that were in more than MEDIA_TOGETHER media at once.
+    uint64_t crowded = 0;
     uint64_t secondary() const { return reflection + refraction + shadow + ambient; }
     RayCounts& operator+=(const RayCounts& b) {
         primary += b.primary;
@@ -55,6 +57,7 @@ struct RayCounts {
         ambient += b.ambient;
         cut_reflection += b.cut_reflection;
         cut_refraction += b.cut_refraction;
+        crowded += b.crowded;
         return *this;
     }
 };

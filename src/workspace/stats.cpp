@@ -40,6 +40,13 @@ std::string cut_note(const RayCounts& rays, uint32_t bounces) {
     return more > bounces ? fmt::format("{}; {} {} goes further", text, setting::bounces, more) : text;
 }
 
+std::string crowded_note(const RayCounts& rays) {
+    if (rays.crowded == 0) return {};
+    return fmt::format(
+        "{} rays were in more than {} overlapping volumes at once: those of the largest do not count there",
+        rays.crowded, MEDIA_TOGETHER);
+}
+
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {
     if (choice.hit != HitTest::tolerance) return {};
     // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.

@@ -61,6 +61,10 @@ std::string room_note(const SceneCubes::Stats& cubes);
 /// What to say where rays that show much of the picture end at the last bounce; empty: nothing.
 std::string cut_note(const RayCounts& rays, uint32_t bounces);
 
+/// What to say where rays were in more media than a stack holds; empty: nothing. Not of the reference, which counts
+/// such rays and follows them.
+std::string crowded_note(const RayCounts& rays);
+
 /// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:
 /// nothing. `bodies`: with the grids of their cubes.
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice);

@@ -61,6 +61,8 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
                                                             : render_on_device(settings, report);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_cut_, true)) note(notes_, cut);
+    const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
+    if (!crowded.empty() && !std::exchange(noted_crowded_, true)) note(notes_, crowded);
     note_culled(settings, made.picture);
     return in_world(std::move(made));
 }

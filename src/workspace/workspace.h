@@ -84,6 +84,7 @@ class Workspace {
     bool noted_tolerance_ = false;   ///< said that it is too small
     bool noted_culled_ = false;      ///< said that the camera is behind single-sided faces
     bool noted_cut_ = false;         ///< said that rays end too early
+    bool noted_crowded_ = false;     ///< said that rays are in too many media
     ChoiceSet<HitTest> noted_room_;  ///< said that these stand for what found no room
 };
 

@@ -146,5 +146,49 @@ TEST_F(ProgramTest, NormalsInTheTrianglesPlaneLookTheSame) {
     EXPECT_LE(nlohmann::json::parse(get(out("r.json")))["pictures"][0]["difference"]["share_different"], 0.001);
 }
 
+/// A ball of 24 x 12 squares as OBJ text, after `before` vertices; `inside_out`: it faces its middle.
+std::string ball(float radius, int before, bool inside_out) {
+    std::string text;
+    for (int ring = 0; ring <= 12; ring++)
+        for (int i = 0; i < 24; i++) {
+            const double a = 2 * 3.14159265 * i / 24, b = 3.14159265 * ring / 12;
+            text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", radius * std::sin(b) * std::sin(a), radius * std::cos(b),
+                                radius * std::sin(b) * std::cos(a));
+        }
+    for (int ring = 0; ring < 12; ring++)
+        for (int i = 0; i < 24; i++) {
+            int at[4] = {ring * 24 + i, (ring + 1) * 24 + i, (ring + 1) * 24 + (i + 1) % 24, ring * 24 + (i + 1) % 24};
+            if (inside_out) std::swap(at[1], at[3]);
+            for (int& corner : at) corner += before + 1;
+            text += fmt::format("f {} {} {}\nf {} {} {}\n", at[0], at[1], at[2], at[0], at[2], at[3]);
+        }
+    return text;
+}
+
+TEST_F(ProgramTest, MediaThatTouchAndOverlapLookTheSame) {
+    put("drink.mtl",
+        "newmtl glass\nillum 7\nNi 1.5\nTf 1 1 1\nnewmtl drink\nillum 7\nNi 1.33\nTf 0.9 0.5 0.3\n"
+        "newmtl ice\nillum 7\nNi 1.2\nTf 1 1 1\n");
+    // A drink that fills its bottle exactly, or reaches into its wall; a ball of ice in it.
+    for (const float drink : {0.9f, 0.95f}) {
+        SCOPED_TRACE(drink);
+        const int each = 13 * 24;
+        put("drink.obj", "mtllib drink.mtl\no drink\nusemtl drink\n" + ball(drink, 0, false) +
+                             "o bottle\nusemtl glass\n" + ball(1, each, false) + ball(0.9f, 2 * each, true) +
+                             "o ice\nusemtl ice\n" + ball(0.4f, 3 * each, false));
+        const Outcome run =
+            this->run({"compare", in("drink.obj"), "-o", out("r.html"), "--json", out("r.json"), "--size", "120x96",
+                       "--tracers", "ldc,reference", "--bounces", "6", "--spp", "2", "--floor", "--sky"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const auto pictures = nlohmann::json::parse(get(out("r.json")))["pictures"];
+        EXPECT_LE(pictures[0]["difference"]["flip"], 0.004);
+        EXPECT_LE(pictures[0]["difference"]["share_different"], 0.004);
+        for (const char* kind : {"reflection", "refraction", "shadow"}) {
+            const double ours = pictures[0]["stats"]["rays"][kind], theirs = pictures[1]["stats"]["rays"][kind];
+            EXPECT_NEAR(ours, theirs, 2e-3 * theirs + 2) << kind;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace peelray

@@ -1,5 +1,6 @@
 #include "render/tracers/khr_tracer.h"
 
+#include "khr/khr_params.h"
 #include "khr/tracer.h"
 #include "render/tracers/no_tracer.h"
 
@@ -41,13 +42,36 @@ void KhrTracer::trace(Commands& commands, const RayQueue& queue, const Buffer& h
     record_khr_trace(commands, device_, structures_, triangles_, queue, hits, query.any_hit);
 }
 
-void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
-    const RayPass& pass = khr_pass(device_, shadows.glass ? "trace_shadow_khr_glass" : "trace_shadow_khr",
-                                   shadows.glass ? KhrRays::nearest_to_light : KhrRays::occluded, triangles_);
-    std::vector<Binding> bindings = shadows.surfaces;
+std::vector<Binding> KhrTracer::with_surfaces(const std::vector<Binding>& surfaces) const {
+    std::vector<Binding> bindings = surfaces;
     bindings.push_back(Binding::if_used("positions", triangles_.positions));
     bindings.push_back(Binding::if_used("triangles", triangles_.triangles));
     bindings.push_back(Binding::if_used("instances", instances_.table()));
+    return bindings;
+}
+
+void KhrTracer::trace_layered(Commands& commands, const LayeredRays& rays) {
+    const RayQueue& queue = rays.rays;
+    const RayPass& pass = khr_pass(device_, "trace_media_khr", KhrRays::nearest, triangles_, {{"camera", rays.camera}});
+    const KhrTraceParams p{queue.count, queue.counters != nullptr, queue.counter, queue.skip != nullptr};
+    std::vector<Binding> bindings = with_surfaces(rays.surfaces);
+    bindings.push_back({"rays", queue.rays});
+    bindings.push_back(Binding::if_used("skip", queue.skip));
+    bindings.push_back(Binding::if_used("queue", queue.counters));
+    bindings.push_back({"hits", rays.hits});
+    bindings.push_back({"media", rays.media});
+    bindings.push_back({"media_walls", rays.walls});
+    record_khr_rays(commands, device_, pass, khr_bindings(structures_, bindings), p, queue);
+}
+
+void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
+    const RayPass& pass = khr_pass(device_,
+                                   shadows.media   ? "trace_shadow_khr_media"
+                                   : shadows.glass ? "trace_shadow_khr_glass"
+                                                   : "trace_shadow_khr",
+                                   shadows.glass ? KhrRays::nearest_to_light : KhrRays::occluded, triangles_);
+    std::vector<Binding> bindings = with_surfaces(shadows.surfaces);
+    bindings.push_back(Binding::if_used("shadow_media", shadows.media));
     bindings.push_back({"shadow_rays", shadows.rays.rays});
     bindings.push_back(Binding::if_used("shadow_skip", *shadows.rays.skip));
     bindings.push_back({"shadow_light", shadows.light});

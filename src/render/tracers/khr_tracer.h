@@ -15,10 +15,14 @@ class KhrTracer : public RayTracer {
     void build(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) override;
     void record_rebuild(Commands& commands) override { structures_.record(commands, true); }
     void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) override;
+    void trace_layered(Commands& commands, const LayeredRays& rays) override;
     void shadow(Commands& commands, const ShadowRays& shadows) override;
     void describe(Commands& commands, TracerStats& stats) const override;
 
   private:
+    /// What shading reads, and the triangles themselves; of it what a pass uses.
+    std::vector<Binding> with_surfaces(const std::vector<Binding>& surfaces) const;
+
     Device& device_;
     const TriangleBuffers& triangles_;
     Instances& instances_;

@@ -85,28 +85,57 @@ void LdcTracer::trace(Commands& commands, const RayQueue& queue, const Buffer& h
                  {choice().hit, choice().tolerance, query.any_hit, query.edges});
 }
 
-void LdcTracer::shadow(Commands& commands, const ShadowRays& shadows) {
-    const RayQueue& queue = shadows.rays;
+TraceParams LdcTracer::params(const RayQueue& queue) const {
     TraceParams p{};
     p.tree = instances_.tree();
     p.count = queue.count;
+    p.counted = queue.counters != nullptr;
+    p.counter = queue.counter;
+    p.skips = queue.skip != nullptr;
     p.tolerance = tolerance();
     p.block = choice().layout.block;
+    return p;
+}
+
+void LdcTracer::trace_layered(Commands& commands, const LayeredRays& rays) {
+    const RayQueue& queue = rays.rays;
+    std::vector<Binding> bindings =
+        cube_bindings(traced(), {{"rays", queue.rays},
+                                 Binding::if_used("skip", queue.skip),
+                                 Binding::if_used("queue", queue.counters),
+                                 {"hits", rays.hits},
+                                 {"media", rays.media},
+                                 {"media_walls", rays.walls},
+                                 Binding::if_used("costs", queue.counting ? &queue.counting->costs : nullptr),
+                                 Binding::if_used("count_totals", queue.counting ? &queue.counting->totals : nullptr)});
+    bindings.insert(bindings.end(), rays.surfaces.begin(), rays.surfaces.end());
+    Constants constants = traversal_constants(device_, traced(), choice().hit, queue.counting != nullptr);
+    constants.push_back({"camera", rays.camera});
+    const Pass& pass = device_.pass(choice().layout.by_pixel() ? "trace_media_pixels" : "trace_media", constants);
+    if (queue.groups)
+        commands.run_indirect(pass, bindings, params(queue), *queue.groups, queue.groups_offset);
+    else
+        commands.run(pass, bindings, params(queue), groups_for(queue.count, 64));
+}
+
+void LdcTracer::shadow(Commands& commands, const ShadowRays& shadows) {
+    const RayQueue& queue = shadows.rays;
     std::vector<Binding> bindings =
         cube_bindings(traced(), {{"shadow_rays", queue.rays},
                                  {"shadow_skip", *queue.skip},
                                  {"shadow_light", shadows.light},
                                  {"queue", *queue.counters},
+                                 Binding::if_used("shadow_media", shadows.media),
                                  Binding::if_used("costs", queue.counting ? &queue.counting->costs : nullptr),
                                  Binding::if_used("count_totals", queue.counting ? &queue.counting->totals : nullptr)});
     if (shadows.glass)
         bindings.insert(bindings.end(), shadows.surfaces.begin(), shadows.surfaces.end());
     else
         bindings = with_hit_materials(bindings, triangles_);
-    const Pass& pass = device_.pass(std::string(shadows.glass ? "trace_shadow_glass" : "trace_shadow") +
-                                        (choice().layout.by_pixel() ? "_pixels" : ""),
+    const std::string through = shadows.media ? "_media" : shadows.glass ? "_glass" : "";
+    const Pass& pass = device_.pass("trace_shadow" + through + (choice().layout.by_pixel() ? "_pixels" : ""),
                                     traversal_constants(device_, traced(), choice().hit, queue.counting != nullptr));
-    commands.run_indirect(pass, bindings, p, *queue.groups, queue.groups_offset);
+    commands.run_indirect(pass, bindings, params(queue), *queue.groups, queue.groups_offset);
 }
 
 void LdcTracer::describe(Frame& frame) const {

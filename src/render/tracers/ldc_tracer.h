@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "ldc/trace_params.h"
 #include "render/tracers/ray_tracer.h"
 
 namespace peelray {
@@ -23,6 +24,7 @@ class LdcTracer : public RayTracer {
     void record_rebuild(Commands& commands) override;
     bool finish_rebuild(Commands& commands) override { return cubes_->finish(commands); }
     void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) override;
+    void trace_layered(Commands& commands, const LayeredRays& rays) override;
     void shadow(Commands& commands, const ShadowRays& shadows) override;
     void describe(Frame& frame) const override;
     void describe(Commands& commands, TracerStats& stats) const override;
@@ -30,6 +32,7 @@ class LdcTracer : public RayTracer {
   private:
     TracedScene traced() const { return {cubes_->cubes(), instances_, triangles_}; }
     const CubeChoice& choice() const { return cubes_->choice(); }
+    TraceParams params(const RayQueue& queue) const;
     /// World units; 0 of other hits.
     float tolerance() const { return choice().hit == HitTest::tolerance ? choice().tolerance : 0; }
 

@@ -24,6 +24,7 @@ class NoTracer : public RayTracer {
     void trace(Commands& commands, const RayQueue&, const Buffer& hits, const TraceQuery&) override {
         commands.fill(hits, ~0u);
     }
+    void trace_layered(Commands&, const LayeredRays&) override {}  // without a tracer none are made
     void shadow(Commands&, const ShadowRays&) override {}
 
   private:

@@ -28,8 +28,19 @@ struct ShadowRays {
     RayQueue rays;
     const Buffer& light;  ///< vec3 each: what may arrive along the ray; once it is traced, what does
     bool glass;           ///< surfaces in the way may tint the light
+    const Buffer* media;  ///< MediaStack each, where the rays start; null: media do not overlap
     /// What shading reads beside triangles and instances, all of it only if used: glass tints by its base colour.
     std::vector<Binding> surfaces;
+};
+
+/// A level's rays where media may overlap: followed to the next surface that is one to them.
+struct LayeredRays {
+    RayQueue rays;
+    const Buffer& hits;             ///< Hit each
+    const Buffer& media;            ///< MediaStack each: where the ray starts
+    const Buffer& walls;            ///< MediaWall each: what is met there
+    bool camera;                    ///< `hits` holds what the rays hit first, and they start in Frame::camera_media
+    std::vector<Binding> surfaces;  ///< as in ShadowRays
 };
 
 struct TraceQuery {
@@ -62,6 +73,9 @@ class RayTracer {
 
     /// Records the tracing of a queue: hits[i] (Hit each) for rays[i].
     virtual void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) = 0;
+
+    /// The same where media may overlap (path/media_walk.glsl).
+    virtual void trace_layered(Commands& commands, const LayeredRays& rays) = 0;
 
     /// Records what is left of the light along shadow rays.
     virtual void shadow(Commands& commands, const ShadowRays& shadows) = 0;

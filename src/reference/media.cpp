@@ -1,0 +1,158 @@
+#include "reference/media.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "path/shading_numbers.h"
+
+namespace peelray {
+namespace {
+
+glm::dvec3 tint_of(const Surface& surface, const Optics& m) {
+    return (1 - m.metallic) * m.transmission * surface.base_color;
+}
+
+}  // namespace
+
+uint32_t Media::depth(uint32_t material) const {
+    return uint32_t(std::count(entered_.begin(), entered_.end(), material));
+}
+
+void Media::leave(uint32_t material) {
+    const auto at = std::find(entered_.begin(), entered_.end(), material);
+    if (at != entered_.end()) entered_.erase(at);
+}
+
+uint32_t Media::counting(const MediaRanks& ranks) const {
+    const auto first = std::min_element(entered_.begin(), entered_.end(), [&](uint32_t a, uint32_t b) {
+        return ranks.of_material[a] < ranks.of_material[b];
+    });
+    return first == entered_.end() ? air : *first;
+}
+
+bool MediaWalk::bounds_medium(uint32_t triangle) const {
+    return ranks_.of_material[surfaces_.material_of_triangle(triangle)] != MediaRanks::none;
+}
+
+/// The walls that are one with the nearest, which comes first: as long as the ray meets parallel walls of media next. A
+/// body's wall counts once, also where two of its triangles meet; a body that the ray enters here it does not leave.
+/// What is opaque hides walls that coincide with it.
+MediaWalk::Together MediaWalk::walls_at(const OracleRay& ray, const Wall& nearest, const Media& media,
+                                        bool to_light) const {
+    Together together{{nearest}, {}};
+    std::vector<Wall>& walls = together.walls;
+    const double slope = std::max(std::abs(glm::dot(nearest.surface.geometric, ray.direction)), LEAST_COSINE);
+    const double reach = WALLS_APART * nearest.surface.extent / slope;
+    const OracleRay near{ray.origin, std::max(ray.tmin, nearest.hit.t - reach), ray.direction, nearest.hit.t + reach};
+    std::vector<OracleHit> hits;
+    const auto prepared = PreparedRay::make(near, bvh_.triangles);
+    if (!prepared) return together;
+    for (const uint32_t index : bvh_.along(near)) {
+        OracleHit hit;
+        const uint32_t triangle = bvh_.triangles.ids[index];
+        if (triangle == nearest.hit.triangle || !prepared->intersect(bvh_.triangles.corners[index], hit)) continue;
+        hit.triangle = triangle;
+        const bool shown = !bvh_.sides.is_single(triangle) ||
+                           comes_from_front(bvh_.triangles.corners[index], ray.direction) != to_light;
+        if (shown && bvh_.alpha.is_present(triangle, hit.u, hit.v)) hits.push_back(hit);
+    }
+    std::sort(hits.begin(), hits.end(),
+              [](const OracleHit& a, const OracleHit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+    hits.erase(std::unique(hits.begin(), hits.end(),
+                           [](const OracleHit& a, const OracleHit& b) { return a.triangle == b.triangle; }),
+               hits.end());
+    for (const OracleHit& hit : hits) {
+        if (walls.size() == WALLS_TOGETHER) break;
+        const Wall wall{hit, surfaces_.at(hit.triangle, hit.u, hit.v, ray.direction)};
+        const uint32_t material = wall.surface.material;
+        if (std::abs(glm::dot(wall.surface.geometric, nearest.surface.geometric)) < WALLS_PARALLEL) break;
+        if (!bounds_medium(hit.triangle)) {
+            if (!surfaces_.optics(material).transmits()) together.opaque = hit;
+            break;
+        }
+        const auto same = [&](bool front) {
+            return std::any_of(walls.begin(), walls.end(), [&](const Wall& other) {
+                return other.surface.material == material && other.surface.front == front;
+            });
+        };
+        if (same(wall.surface.front)) continue;
+        if (same(!wall.surface.front) && !media.holds(material)) break;
+        walls.push_back(wall);
+    }
+    return together;
+}
+
+/// What walls at the same place are to a ray: it enters before it leaves, and what it leaves without having entered it
+/// was there. Returns the wall that decides how the surface looks.
+size_t MediaWalk::meet(const std::vector<Wall>& walls, Meeting& meeting) const {
+    Media assumed = meeting.before;
+    for (const Wall& wall : walls)
+        if (!wall.surface.front && !meeting.before.holds(wall.surface.material)) assumed.enter(wall.surface.material);
+    Media behind = assumed;
+    for (const Wall& wall : walls)
+        if (wall.surface.front) behind.enter(wall.surface.material);
+    for (const Wall& wall : walls)
+        if (!wall.surface.front) behind.leave(wall.surface.material);
+    meeting.from = assumed.counting(ranks_);
+    meeting.to = behind.counting(ranks_);
+    size_t owner = 0;
+    uint32_t least = MediaRanks::none;
+    for (size_t i = 0; i < walls.size(); i++) {
+        const uint32_t material = walls[i].surface.material, rank = ranks_.of_material[material];
+        if ((material != meeting.from && material != meeting.to) || rank >= least) continue;
+        owner = i;
+        least = rank;
+    }
+    meeting.beside = glm::dvec3(1);
+    for (size_t i = 0; i < walls.size(); i++) {
+        const uint32_t material = walls[i].surface.material;
+        // The wall of a body within another one of the same medium has no colour.
+        const bool inner = assumed.holds(material) && behind.holds(material);
+        if (!inner && (i != owner || meeting.from == meeting.to))
+            meeting.beside *= tint_of(walls[i].surface, surfaces_.optics(material));
+    }
+    meeting.behind = std::move(behind);
+    return owner;
+}
+
+Meeting MediaWalk::next(OracleRay ray, uint32_t skip, const Media& media, bool to_light) const {
+    Meeting meeting;
+    meeting.before = media;
+    for (int i = 0;; i++) {
+        meeting.hit = bvh_.nearest(ray, skip, to_light).hit;
+        meeting.wall = meeting.hit.hit() && bounds_medium(meeting.hit.triangle);
+        meeting.beyond = meeting.hit.t;
+        meeting.last = meeting.hit.triangle;
+        if (!meeting.wall) {
+            meeting.behind = meeting.before;
+            return meeting;
+        }
+        const OracleHit& hit = meeting.hit;
+        const Wall nearest{hit, surfaces_.at(hit.triangle, hit.u, hit.v, ray.direction)};
+        const auto [walls, opaque] = walls_at(ray, nearest, meeting.before, to_light);
+        if (opaque) {
+            meeting.hit = *opaque;
+            meeting.wall = false;
+            meeting.behind = meeting.before;
+            return meeting;
+        }
+        const size_t owner = meet(walls, meeting);
+        for (const Wall& wall : walls) {
+            if (wall.hit.t < meeting.beyond) continue;
+            meeting.beyond = wall.hit.t;
+            meeting.last = wall.hit.triangle;
+        }
+        if (meeting.from != meeting.to || i >= WALLS_PASSED) {
+            if (walls.size() > 1)
+                meeting.lift = WALLS_LIFT * WALLS_APART * std::max(nearest.surface.extent, walls[owner].surface.extent);
+            meeting.hit = walls[owner].hit;
+            return meeting;
+        }
+        meeting.passed *= meeting.beside;
+        meeting.before = meeting.behind;
+        ray.tmin = meeting.beyond;
+        skip = meeting.last;
+    }
+}
+
+}  // namespace peelray

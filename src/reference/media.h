@@ -1,0 +1,75 @@
+// Media in the reference: what a path is inside of, and the next surface that is one to it (docs/frame.md section 4).
+// Private to src/reference.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "reference/bvh.h"
+#include "reference/surface.h"
+#include "scene/media.h"
+
+namespace peelray {
+
+/// Materials whose volumes a path has entered and not left, each as often as it has.
+class Media {
+  public:
+    static constexpr uint32_t air = ~0u;
+
+    uint32_t depth(uint32_t material) const;
+    bool holds(uint32_t material) const { return depth(material) > 0; }
+    void enter(uint32_t material) { entered_.push_back(material); }
+    /// Without effect if the path is not in it.
+    void leave(uint32_t material);
+    /// How many there are.
+    size_t kinds() const { return std::set<uint32_t>(entered_.begin(), entered_.end()).size(); }
+    /// The material whose medium counts, or air.
+    uint32_t counting(const MediaRanks& ranks) const;
+
+  private:
+    std::vector<uint32_t> entered_;
+};
+
+/// What a ray meets.
+struct Meeting {
+    OracleHit hit;      ///< a miss: nothing
+    bool wall = false;  ///< of a medium; if not, only `hit`, `before`, `behind`, `passed` and `beyond` have a meaning
+    Media before, behind;
+    uint32_t from = Media::air, to = Media::air;  ///< the media that count on either side
+    glm::dvec3 passed{1};                         ///< tint of walls on the way at which nothing changed
+    glm::dvec3 beside{1};                         ///< tint of the other walls at the same place
+    double lift = 0;                              ///< how far from the wall rays start at least
+    double beyond = 0;                            ///< where a ray that goes straight on has passed it
+    uint32_t last = ~0u;                          ///< the triangle that it passes last
+};
+
+/// Finds what rays meet; all that it is made of must outlive it.
+class MediaWalk {
+  public:
+    MediaWalk(const Bvh& bvh, const Surfaces& surfaces, const MediaRanks& ranks)
+        : bvh_(bvh), surfaces_(surfaces), ranks_(ranks) {}
+
+    /// `skip`: a triangle that does not count; `to_light`: see Bvh::nearest().
+    Meeting next(OracleRay ray, uint32_t skip, const Media& media, bool to_light = false) const;
+
+  private:
+    struct Wall {
+        OracleHit hit;
+        Surface surface;
+    };
+    bool bounds_medium(uint32_t triangle) const;
+    /// What is in one place.
+    struct Together {
+        std::vector<Wall> walls;
+        std::optional<OracleHit> opaque;
+    };
+    Together walls_at(const OracleRay& ray, const Wall& nearest, const Media& media, bool to_light) const;
+    size_t meet(const std::vector<Wall>& walls, Meeting& meeting) const;
+
+    const Bvh& bvh_;
+    const Surfaces& surfaces_;
+    const MediaRanks& ranks_;
+};
+
+}  // namespace peelray
