@@ -76,7 +76,7 @@ CASES = {
     "plain": (lambda root: None, QUIET),
     "identity": (node(matrix=IDENTITY), QUIET),
     "later-version": (lambda root: root["asset"].update(version="2.1"), QUIET),
-    "empty-scale": (node(scale=[0, 1, 1]), "no area"),
+    "empty-scale": (node(scale=[0, 1, 1]), QUIET),
     "rotation-none": (node(rotation=[0, 0, 0, 0]), "ROTATION_NON_UNIT"),
     "rotation-long": (node(rotation=[1, 1, 0, 1]), "ROTATION_NON_UNIT"),
     "rotation-short": (node(rotation=[0, 0, 0, 0.5]), "ROTATION_NON_UNIT"),
