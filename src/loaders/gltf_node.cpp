@@ -3,6 +3,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/text.h"
@@ -268,7 +269,8 @@ class NodeReader {
         const bool sees = from.type == "perspective" ? camera.vertical_fov > 0 && camera.vertical_fov < 3.1415927f
                                                      : camera.orthographic_height > 0;
         if (!sees) {
-            ++loader_.ignored["{} camera{|s} of an unknown type or without a field of view ignored"];
+            if (blind_cameras_.insert(index).second)
+                ++loader_.ignored["{} camera{|s} of an unknown type or without a field of view ignored"];
             return std::nullopt;
         }
         return camera;
@@ -333,7 +335,8 @@ class NodeReader {
     GltfLoader& loader_;
     const tinygltf::Model& model_;
     std::vector<bool> visited_, read_;
-    std::vector<bool> hidden_;  ///< of Scene::nodes
+    std::set<size_t> blind_cameras_;  ///< those that have been noted
+    std::vector<bool> hidden_;        ///< of Scene::nodes
     std::vector<glm::mat4> worlds_;
 };
 

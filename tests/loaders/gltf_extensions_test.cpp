@@ -32,6 +32,8 @@ json textured() {
     gltf["textures"] = {{{"source", 0}}};
     gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
     primitive(gltf)["material"] = 0;
+    primitive(gltf)["attributes"]["TEXCOORD_0"] =
+        add_accessor(gltf, pack<float>({0, 0, 1, 0, 1, 1, 0, 1}), 5126, "VEC2", 4);
     return gltf;
 }
 

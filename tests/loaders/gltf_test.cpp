@@ -481,6 +481,7 @@ TEST(Gltf, ReflectanceOfDielectrics) {
     primitive(gltf)["material"] = 0;
     const auto with = [&](const json& extensions) {
         gltf["materials"] = {{{"extensions", extensions}}};
+        gltf["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_specular"};
         return load(folder, gltf);
     };
     const auto ior = [&](double value) { return with({{"KHR_materials_ior", {{"ior", value}}}}); };
