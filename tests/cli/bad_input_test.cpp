@@ -83,7 +83,11 @@ TEST_F(BadInput, GltfBuffersAndImages) {
     std::filesystem::remove(out("a.png"));
     put("short.png", "\x89PNG\r\n\x1a\n");
     gltf["images"][0]["uri"] = "short.png";
-    expect_bad_gltf(gltf, "short.png");
+    put("damaged.gltf", gltf.dump());
+    const Outcome damaged = render(in("damaged.gltf"));
+    expect_done(damaged, {"a.png"});
+    EXPECT_NE(damaged.err.find("short.png"), std::string::npos) << damaged.err;
+    EXPECT_NE(damaged.err.find("the factor is used"), std::string::npos) << damaged.err;
 }
 
 TEST_F(BadInput, GltfRanges) {
@@ -95,7 +99,7 @@ TEST_F(BadInput, GltfRanges) {
     expect_bad_gltf(gltf, "accessors");
     gltf = square_gltf();
     gltf["nodes"][0]["mesh"] = 3;
-    expect_bad_gltf(gltf, "meshes");
+    expect_bad_gltf(gltf, "has 1 mesh");
     gltf = square_gltf();
     gltf["materials"] = {{{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}};
     expect_bad_gltf(gltf, "alphaCutoff -0.5");

@@ -285,7 +285,7 @@ TEST_F(Resume, TheManifestKnowsEveryOptionThatShapesAPicture) {
     const std::vector<std::string> shapeless = {"--help",   "--output", "--stats",  "--frames",   "--shard",
                                                 "--resume", "--repeat", "--device", "--validate", "--counters"};
     const std::string help = run({"render", "--help"}).out;
-    const std::regex option("\n  (?:-.,)?(--[a-z]+)");
+    const std::regex option("\n  (?:-.,)?(--[a-z-]+)");
     size_t count = 0;
     for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it, ++count) {
         const std::string name = (*it)[1];
