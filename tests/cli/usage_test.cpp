@@ -152,6 +152,15 @@ TEST_F(Usage, ASceneWithoutACommand) {
     expect_refused(run({"x.obj", "render", "-o", "a.png"}), 2, "peelray render x.obj -o a.png");
 }
 
+TEST_F(Usage, ACommandIsNoFolderOfItsName) {
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::create_directory(folder / "bench");
+    std::filesystem::current_path(folder / ".");
+    const Outcome wrong = run({"bench", "--size", "x"});
+    std::filesystem::current_path(before);
+    expect_refused(wrong, 2, "is not a picture size");
+}
+
 TEST_F(Usage, OptionsThatExcludeEachOther) {
     expect_each(2, {{{"--env", "e.hdr", "--sky"}, "excludes"},
                     {{"--env", "e.hdr", "--background", "1,1,1"}, "excludes"},
