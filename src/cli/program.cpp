@@ -24,8 +24,10 @@ bool is_output_option(const std::string& word) {
 /// What to type, where somebody named a scene before any command or without one; empty: no scene was named.
 /// `words`: the command line.
 std::string advice_on_scene(std::vector<std::string> words, const CLI::App& program) {
+    if (words.empty() || !is_scene_name(words.front())) return "";
     // A folder may have a command's name.
-    if (words.empty() || program.get_subcommand_no_throw(words.front()) || !is_scene_name(words.front())) return "";
+    const auto named = [&](const CLI::App* command) { return command->get_name() == words.front(); };
+    if (!program.get_subcommands(named).empty()) return "";
     const auto chosen = program.get_subcommands();
     const std::string command = chosen.empty() ? "render" : chosen.front()->get_name();
     words.erase(std::remove(words.begin() + 1, words.end(), command), words.end());
