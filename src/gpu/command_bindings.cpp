@@ -86,7 +86,7 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding* co
         else if (binding.structure)
             structures[i] = binding.structure->handle();
         else
-            infos[i] = {binding.buffer ? binding.buffer->handle() : device_.dummy(), 0, VK_WHOLE_SIZE};
+            infos[i] = {binding.buffer ? binding.buffer->handle() : device_.dummy(wanted[i].writes), 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    nullptr,
                                    set,

@@ -175,7 +175,7 @@ void Device::create_logical(bool validate) {
     volkLoadDeviceTable(&vk, handle);
     vk.vkGetDeviceQueue(handle, queue_family, 0, &queue);
     immediate = properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !validate;
-    create_dummy();
+    create_dummies();
     // With validation on, shaders are compiled afresh, so that the layers see every pipeline being made.
     state_->cache = std::make_unique<PipelineCache>(*this, !validate);
 }
@@ -192,8 +192,8 @@ void Device::lower_limits(const DeviceOptions& options) {
 Device::~Device() {
     vk.vkDeviceWaitIdle(handle);
     state_.reset();
-    vk.vkDestroyBuffer(handle, dummy_, nullptr);
-    vk.vkFreeMemory(handle, dummy_memory_, nullptr);
+    for (VkBuffer dummy : dummies_) vk.vkDestroyBuffer(handle, dummy, nullptr);
+    for (VkDeviceMemory memory : dummy_memory_) vk.vkFreeMemory(handle, memory, nullptr);
     vk.vkDestroyDevice(handle, nullptr);
     if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
     vkDestroyInstance(instance_, nullptr);
@@ -231,16 +231,18 @@ void Device::check_validation() const {
              validation_messages_.front());
 }
 
-/// Nobody reads or writes it. It is not accounted for, since it belongs to no part of the program.
-void Device::create_dummy() {
+/// Nobody reads or writes them. They are not accounted for, since they belong to no part of the program.
+void Device::create_dummies() {
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = 256;
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    check_vulkan(vk.vkCreateBuffer(handle, &info, nullptr, &dummy_), "creating the dummy buffer");
-    VkMemoryRequirements needs;
-    vk.vkGetBufferMemoryRequirements(handle, dummy_, &needs);
-    dummy_memory_ = allocate_uncounted(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, "the dummy buffer", false);
-    check_vulkan(vk.vkBindBufferMemory(handle, dummy_, dummy_memory_, 0), "binding the dummy buffer");
+    for (size_t i = 0; i < dummies_.size(); i++) {
+        check_vulkan(vk.vkCreateBuffer(handle, &info, nullptr, &dummies_[i]), "creating a dummy buffer");
+        VkMemoryRequirements needs;
+        vk.vkGetBufferMemoryRequirements(handle, dummies_[i], &needs);
+        dummy_memory_[i] = allocate_uncounted(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, "a dummy buffer", false);
+        check_vulkan(vk.vkBindBufferMemory(handle, dummies_[i], dummy_memory_[i], 0), "binding a dummy buffer");
+    }
 }
 
 VkDeviceMemory Device::allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,

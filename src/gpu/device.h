@@ -2,6 +2,7 @@
 #pragma once
 
 #include <volk.h>
+#include <array>
 
 #include <cstdint>
 #include <memory>
@@ -130,8 +131,10 @@ class Device {
     bool immediate = false;
     DeviceFeatures features;  ///< tests turn some off
     bool labels = false;      ///< VK_EXT_debug_utils is on: passes name themselves
-    /// Bound where a variant of a shader does not use a buffer that it declares (Binding::if_used).
-    VkBuffer dummy() const { return dummy_; }
+    /// Bound where a variant of a shader does not use a buffer that it declares (Binding::if_used). Those that the
+    /// shader could write have one of their own: by what is declared alone, a write that nobody does would otherwise
+    /// seem to need a barrier before the reads that nobody does.
+    VkBuffer dummy(bool written) const { return dummies_[written]; }
     /// `addressed`: of a buffer with VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
                             std::string_view what, bool addressed = false);
@@ -142,7 +145,7 @@ class Device {
     struct State;
     void create_logical(bool validate);
     void lower_limits(const DeviceOptions& options);
-    void create_dummy();
+    void create_dummies();
     VkDeviceMemory allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
                                       VkMemoryPropertyFlags nice, std::string_view what, bool addressed);
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
@@ -150,8 +153,8 @@ class Device {
                                                      const VkDebugUtilsMessengerCallbackDataEXT*, void*);
 
     DeviceInfo info_;
-    VkBuffer dummy_ = VK_NULL_HANDLE;
-    VkDeviceMemory dummy_memory_ = VK_NULL_HANDLE;
+    std::array<VkBuffer, 2> dummies_{};
+    std::array<VkDeviceMemory, 2> dummy_memory_{};
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     RayTracingLimits ray_tracing_limits_;

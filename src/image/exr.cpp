@@ -174,9 +174,9 @@ void convert_primaries(const std::filesystem::path& path, const Imf::Header& hea
         near(from.white, rec709.white))
         return;
     const glm::dmat3 matrix = primaries_to_rec709(from);
-    double largest = 0;
-    for (int i = 0; i < 9; i++) largest = std::max(largest, std::abs(matrix[i / 3][i % 3]));
-    if (!(largest < 1e3)) {
+    bool spans = true;
+    for (int i = 0; i < 9; i++) spans &= std::abs(matrix[i / 3][i % 3]) < 1e3;  // false for NaN
+    if (!spans) {
         note = fmt::format("{}: its primaries (\"chromaticities\") span no colours: it is read as Rec. 709",
                            path.filename().string());
         return;

@@ -93,8 +93,8 @@ TEST_F(GlassTest, RaysThatEndAtTheLastBounceAreCounted) {
     }
     // Between two mirrors rays never end; half of the light is lost at each, so that they are cut by their weight.
     Stage stage;
-    stage.add(parallelogram({-8, -8, 0}, {16, 0, 0}, {0, 16, 0}), plane_mirror(glm::vec3(0.5f)));
-    stage.add(parallelogram({-8, -8, 10}, {0, 16, 0}, {16, 0, 0}), plane_mirror(glm::vec3(0.5f)));
+    stage.add(parallelogram({-30, -30, 0}, {60, 0, 0}, {0, 60, 0}), plane_mirror(glm::vec3(0.5f)));
+    stage.add(parallelogram({-30, -30, 10}, {0, 60, 0}, {60, 0, 0}), plane_mirror(glm::vec3(0.5f)));
     settings.reflection = true;
     settings.bounces = 4;
     EXPECT_EQ(render(stage, white, settings).rays.cut_reflection, 16u * 16);

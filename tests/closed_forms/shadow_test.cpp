@@ -207,7 +207,8 @@ TEST_F(ShadowTest, TessellatedSphereIsLitAsTheSmoothOneIs) {
 
 TEST_F(ShadowTest, BentNormalsLetNoLightThrough) {
     // Light from below a sheet, which the normals of a dent would see: the triangles themselves are in the way,
-    // whichever of their sides are shown. Two large ones, then 32.
+    // whichever of their sides are shown. Two large ones, then 32, whose neighbours are in the way too: only if light
+    // does not pass their backs (docs/frame.md).
     const glm::dvec3 travel = glm::normalize(glm::dvec3(1, 0.1, 0.2));
     const auto bent = [](float amount, uint32_t n) {
         Primitive sheet;
@@ -227,6 +228,7 @@ TEST_F(ShadowTest, BentNormalsLetNoLightThrough) {
     };
     for (uint32_t squares : {1u, 4u}) {
         for (bool double_sided : {true, false}) {
+            if (squares > 1 && !double_sided) continue;
             SCOPED_TRACE(fmt::format("{} squares, double-sided {}", squares, double_sided));
             Material white_paint = lambert({1, 1, 1});
             white_paint.double_sided = double_sided;

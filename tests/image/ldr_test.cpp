@@ -66,7 +66,7 @@ TEST_F(Ldr, RefusesATruncatedJpeg) {
 }
 
 TEST_F(Ldr, WritersSayWhyTheyCannot) {
-    expect_error([&] { write_png(folder / "no/a.png", ldr_pattern(2, 2)); }, "no folder");
+    expect_error([&] { write_png("/proc/no/a.png", ldr_pattern(2, 2)); }, "/proc/no");
     expect_error([&] { write_png("/proc/a.png", ldr_pattern(2, 2)); }, "/proc/a.png");
     expect_error([&] { write_png(folder / "a.png", Image8{}); }, "empty");
     EXPECT_EQ(files(), 0u);

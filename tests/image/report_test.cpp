@@ -188,7 +188,7 @@ TEST_F(ReportFile, RefusesWhatIsNoComparison) {
 
 TEST_F(ReportFile, SaysWhyAPlaceIsNotWritable) {
     expect_error([&] { write_report(folder, small_report()); }, "is a folder");
-    expect_error([&] { write_report(folder / "none/report.html", small_report()); }, "no folder");
+    expect_error([&] { write_report("/proc/no/report.html", small_report()); }, "/proc/no");
     expect_error([&] { write_report("/dev/null", small_report()); }, "not a regular file");
     EXPECT_EQ(files(), 0u);
 }

@@ -132,7 +132,8 @@ TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
                 if (want.radiance[i].w == 1 && got.radiance[i].w == 1)
                     result.add(near(glm::dvec3(got.radiance[i]), glm::dvec3(want.radiance[i]), spp == 1 ? 2e-3 : 0.02),
                                [&] { return text(glm::dvec3(got.radiance[i])) + text(glm::dvec3(want.radiance[i])); });
-            result.expect(0, 1000);
+            // Of several samples at the rim some see the room.
+            result.expect(spp == 1 ? 0 : 0.02, 1000);
         }
     }
 }
