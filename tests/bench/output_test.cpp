@@ -92,7 +92,7 @@ TEST_F(BenchOutputTest, WhereNothingWasMeasuredTheFirstReasonIsSaid) {
                           output.add({}, "row\n", reason);
                           output.add({}, "row\n", "another");
                       }),
-              "none of the 2 rows could be measured: too fine: choose less (--ldc)");
+              "none of 2 rows could be measured: too fine: choose less (--ldc)");
     EXPECT_EQ(reason_text(reason), "too fine: choose less (--ldc)");
     EXPECT_EQ(json()["complete"], true);
 }

@@ -86,8 +86,7 @@ TEST_F(BenchOutputTest, NothingMeasuredIsAFailureWithTheFirstReason) {
         output.add({}, "| 1 |\n", "the first reason");
         output.add({}, "| 2 |\n", "the second reason");
     };
-    expect_error([&] { output.run(2, measure, [](bool) {}); },
-                 "none of the 2 rows could be measured: the first reason");
+    expect_error([&] { output.run(2, measure, [](bool) {}); }, "none of 2 rows could be measured: the first reason");
     EXPECT_EQ(json()["complete"], true);
 }
 

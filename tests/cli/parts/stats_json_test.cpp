@@ -64,8 +64,13 @@ TEST(StatsJson, AllOfATracedPictureInOrder) {
     EXPECT_EQ(json["api_version"], "1.3.250");
     EXPECT_EQ(json["image"], (Json{64, 48}));
     EXPECT_EQ(json["passes"][1], (Json{{"name", "trace"}, {"ms", 3.0}}));
-    EXPECT_EQ(json["rays"],
-              (Json{{"primary", 3072}, {"reflection", 100}, {"refraction", 50}, {"shadow", 700}, {"ambient", 7}}));
+    EXPECT_EQ(json["rays"], (Json{{"primary", 3072},
+                                  {"reflection", 100},
+                                  {"refraction", 50},
+                                  {"shadow", 700},
+                                  {"ambient", 7},
+                                  {"cut", {{"reflection", 0}, {"refraction", 0}}},
+                                  {"crowded", 0}}));
     EXPECT_DOUBLE_EQ(json["mrays_per_second"]["reflection_and_refraction"], 150 / 3e3);
     EXPECT_DOUBLE_EQ(json["mrays_per_second"]["shadow_and_ambient"], 707 / 0.5e3);
     EXPECT_EQ(json["moved"], (Json{{"cubes_rebuilt", 1}, {"cubes_reused", 1}, {"instances_transformed", 2}}));
@@ -83,10 +88,11 @@ TEST(StatsJson, AllOfATracedPictureInOrder) {
 
 TEST(StatsJson, CubesOneByOne) {
     const Json ldc = picture_json(traced_picture())["ldc"];
-    EXPECT_EQ(keys_of(ldc), (std::vector<std::string>{
-                                "n", "box", "builder", "traversal", "block", "sampling", "samples", "layers",
-                                "layers_of", "occupied_voxels", "occupied_nodes", "bytes", "build_scratch_bytes",
-                                "triangles_without_area", "triangles_not_finite", "count", "bare_bodies", "cubes"}));
+    EXPECT_EQ(keys_of(ldc),
+              (std::vector<std::string>{"n", "box", "builder", "traversal", "block", "sampling", "samples", "layers",
+                                        "layers_of", "occupied_voxels", "occupied_nodes", "bytes",
+                                        "build_scratch_bytes", "triangles_without_area", "triangles_not_finite",
+                                        "count", "bare_bodies", "no_room", "cubes"}));
     EXPECT_EQ(ldc["n"], 256);
     EXPECT_EQ(ldc["box"]["upper"], (Json{1.0, 2.0, 3.0}));
     EXPECT_EQ(ldc["count"], 1);
