@@ -102,7 +102,7 @@ CASES = {
     "undeclared": (undeclared("KHR_materials_transmission", transmissionFactor=1), "UNDECLARED_EXTENSION"),
     "cutoff": (material(alphaMode="MASK", alphaCutoff=-1), REFUSED),
     "no-such-texture": (material(normalTexture={"index": 0}), REFUSED),
-    "camera-type": (camera(type="fisheye"), "cameras of an unknown type"),
+    "camera-type": (camera(type="fisheye"), "camera of an unknown type"),
     "camera-wide": (camera(type="perspective", perspective={"yfov": 4, "znear": 0.1}), "without a field of view"),
     "camera-orthographic": (camera(type="orthographic", orthographic={"xmag": -1, "ymag": -1, "znear": 0, "zfar": 9}), QUIET),
     "light-type": (light(type="laser"), "VALUE_NOT_IN_LIST"),
