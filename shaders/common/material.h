@@ -8,6 +8,19 @@
 namespace peelray {
 #endif
 
+// What textures give, in the order of material_textures (src/scene/scene.h).
+#define TEXTURE_BASE_COLOR 0
+#define TEXTURE_EMISSIVE 1
+#define TEXTURE_METALLIC 2
+#define TEXTURE_ROUGHNESS 3
+#define TEXTURE_TRANSMISSION 4
+#define TEXTURE_THICKNESS 5
+#define TEXTURE_NORMAL 6
+#define TEXTURE_OCCLUSION 7
+#define TEXTURE_SPECULAR 8
+#define TEXTURE_SPECULAR_COLOR 9
+#define TEXTURE_USES 10
+
 struct GpuMaterial {
     vec3 base_color;
     float metallic;
@@ -16,29 +29,47 @@ struct GpuMaterial {
     vec3 absorption;  ///< per world unit inside the volume; 0: none
     float transmission;
     float ior;
-    int texture;         ///< base colour, -1: none
+    int textures[TEXTURE_USES];  ///< by TEXTURE_*: an entry of the table of textures, -1: none
+    uint channels;       ///< of those of single numbers, two bits each
+    uint first_tangent;  ///< of the vertices' tangents, which lie behind the texture coordinates, two entries each
+    float normal_scale;
+    float occlusion_strength;
     uint flags;          ///< MATERIAL_*
     float thickness;     ///< of a volume, world units; rays measure it, cube maps cannot
     float alpha;         ///< of the base colour
     float alpha_cutoff;  ///< 0: opaque
     vec3 f0;             ///< reflectance of the dielectric part at normal incidence; one value but for MATERIAL_SCHLICK
     float f90;           ///< MATERIAL_SCHLICK: at grazing angles
-    vec3 fresnel_fit;    ///< else: its reflectance is about f0 and these times the powers of split_sum.h
+    vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of split_sum.h
 };
-SHARED_SIZE(GpuMaterial, 100);
+SHARED_SIZE(GpuMaterial, 152);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
-#define MATERIAL_COLORED 4u        // vertices have colours
-#define MATERIAL_SCHLICK 8u        // reflectance between f0 and f90; else by the index of refraction
-#define MATERIAL_SINGLE_SIDED 16u  // rays from behind pass
+#define MATERIAL_COLORED 4u       // vertices have colours
+#define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
+#define MATERIAL_SCHLICK 16u      // reflectance between f0 and f90; else by the index of refraction
+#define MATERIAL_TEXTURED 32u     // by more than a base colour and a normal
 
+/// A texture as materials use it.
 struct GpuTexture {
-    uint offset;  ///< first texel in the texel buffer
+    uint offset;  ///< first word of its texels
     uint width;
     uint height;
-    uint flags;  ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), bit 4: nearest
+    uint flags;     ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), USE_*
+    uint first_uv;  ///< of its set of texture coordinates
+    vec2 u_axis;    ///< coordinates: u times this + v times the next + offset
+    vec2 v_axis;
+    vec2 uv_offset;
 };
-SHARED_SIZE(GpuTexture, 16);
+SHARED_SIZE(GpuTexture, 44);
+#define USE_NEAREST 16u
+#define USE_DATA 32u   // not encoded as sRGB
+#define USE_DEEP 64u   // 16 bits a channel, two words a texel
+#define USE_MOVED 128u // coordinates are transformed
+
+/// Words of texels lie in the rows of an image of several layers, which no device limits to what a buffer may hold.
+#define TEXEL_ROW_BITS 12u
+#define TEXEL_LAYER_BITS 24u
 
 #ifdef __cplusplus
 }  // namespace peelray

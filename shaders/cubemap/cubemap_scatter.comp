@@ -2,7 +2,6 @@
 // object. No ray is traced.
 #version 460
 #include "common/common.glsl"
-#include "common/material.h"
 #include "common/ray.h"
 #include "cubemap/cubemap_params.h"
 #include "path/path_params.h"
@@ -29,7 +28,7 @@ GpuObject object;  // of this thread's hit
 /// A cube map holds the whole lobe, blurred: one lookup along the mirror direction.
 bool samplesMicrofacets() { return false; }
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) { return s.normal; }
-float tracedPart(GpuMaterial m) { return 1.0; }
+float tracedPart(Material m) { return 1.0; }
 void decide(inout Branch branch, vec3 path_weight, uint effect) {
     branch.traced = (frame[0].effects & effect) != 0u && object.probe != NO_PROBE;
 }
@@ -62,7 +61,7 @@ void main() {
     } else {
         object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
         const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
-        const GpuMaterial m = materials[s.material];
+        const Material m = materialOf(s);
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
         radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front), state, reflection, refraction);

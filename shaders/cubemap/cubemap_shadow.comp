@@ -1,7 +1,6 @@
 // The baseline's light: lamps and the sun through shadow maps, the diffuse sky unoccluded.
 #version 460
 #include "common/common.glsl"
-#include "common/material.h"
 #include "common/ray.h"
 #include "cubemap/cubemap_params.h"
 #include "path/frame.h"
@@ -43,7 +42,7 @@ void main() {
     if (hit.triangle == NO_TRIANGLE) return;
     const vec3 view = -rays[i].direction;
     const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), -view);
-    const GpuMaterial m = materials[s.material];
+    const Material m = materialOf(s);
     if ((m.flags & MATERIAL_UNLIT) != 0u) return;
     vec3 sum = skyLight(s, m, view);
     for (uint k = 0u; k < frame[0].lights; k++) {

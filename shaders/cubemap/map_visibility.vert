@@ -2,7 +2,6 @@
 #version 460
 #include "common/common.glsl"
 #include "common/instance.h"
-#include "common/material.h"
 #include "cubemap/cubemap_params.h"
 #include "path/frame.h"
 PARAMS(MapVisibilityParams)
@@ -12,6 +11,7 @@ BUFFER(readonly, 2, uvec3, triangles)
 BUFFER(readonly, 3, GpuInstance, instances)
 #define BASE_COLOR_FIRST_BINDING 4
 #include "common/base_color_buffers.glsl"
+#include "common/material.glsl"
 BUFFER(readonly, 10, uint, triangle_objects)
 BUFFER(readonly, 11, GpuObject, objects)
 layout(location = 0) flat out uvec2 surface;  // a SurfaceId
@@ -22,8 +22,7 @@ layout(location = 0) flat out uvec2 surface;  // a SurfaceId
 layout(constant_id = 0) const bool single_sided = false;  // the scene has single-sided materials
 
 bool drawn(vec3 a, vec3 b, vec3 c) {
-    const GpuMaterial m = materials[triangle_materials[surface.y]];
-    const bool transmits = m.transmission > 0.0 && m.metallic < 1.0;
+    const bool transmits = mayTransmit(surface.y);
     const bool back = viewSeesBack(a, b, c, surface.x);
     if (single_sided && back && singleSided(surface.y)) return false;
     if (params.shadow != 0u) return !transmits;

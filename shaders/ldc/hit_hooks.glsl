@@ -1,8 +1,7 @@
 // What the traversal asks about the material of a hit. Include after base_color_buffers.glsl, the specialisation constants `masked` and
 // `single_sided` (the scene has such materials), and before peelray/peelray.glsl. HITS_TO_LIGHT: the rays go from surfaces to lights.
 // HITS_FORGET: rays do not meet a triangle again that they have passed (media_forget.glsl).
-#include "common/alpha_test.glsl"
-#include "common/sidedness.glsl"
+#include "common/material.glsl"
 #ifdef HITS_FORGET
 #include "path/media_forget.glsl"
 #define PEELRAY_ACCEPT(triangle, uv) (!mediaForgotten(triangle) && (!masked || alphaPresent(triangle, uv)))

@@ -1,8 +1,8 @@
-// The alpha test of a cube's samples. Include after the buffer positions and what alpha_test.glsl needs.
+// The alpha test of a cube's samples. Include after the buffer positions and what material.glsl needs.
 #ifndef PEELRAY_LDC_ALPHA_GLSL
 #define PEELRAY_LDC_ALPHA_GLSL
 
-#include "common/alpha_test.glsl"
+#include "common/material.glsl"
 #include "ldc/ldc_common.glsl"
 
 /// Does the triangle have a surface above the place (u, v) of its LDI? `id`: triangle * 4 + axis. Beside the triangle

@@ -5,6 +5,7 @@
 #include "common/instance.h"
 #include "motion/motion_params.h"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool with_tangents = false;
 PARAMS(DeformParams)
 BUFFER(readonly, 0, DeformPiece, pieces)
 BUFFER(readonly, 1, vec3, rest_positions)
@@ -17,6 +18,8 @@ BUFFER(writeonly, 7, vec3, positions)
 BUFFER(writeonly, 8, vec3, normals)
 BUFFER(, 9, uvec3, body_lower)
 BUFFER(, 10, uvec3, body_upper)
+BUFFER(readonly, 11, vec4, rest_tangents)
+BUFFER(writeonly, 12, vec2, tangents)  // behind the texture coordinates
 #include "common/grow_bounds.glsl"
 
 /// The piece of this workgroup.
@@ -31,12 +34,15 @@ uint findPiece() {
     return first;
 }
 
-void morph(DeformPiece piece, uint vertex, inout vec3 position, inout vec3 normal) {
+void morph(DeformPiece piece, uint vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent) {
+    const uint kinds = with_tangents ? 3u : 2u;
     for (uint i = 0u; i < piece.targets; i++) {
         const float weight = target_weights[piece.first_weight + i];
         if (weight == 0.0) continue;
-        position += weight * targets[piece.first_target + 2u * i * piece.vertices + vertex];
-        normal += weight * targets[piece.first_target + (2u * i + 1u) * piece.vertices + vertex];
+        const uint first = piece.first_target + kinds * i * piece.vertices + vertex;
+        position += weight * targets[first];
+        normal += weight * targets[first + piece.vertices];
+        if (with_tangents) tangent += weight * targets[first + 2u * piece.vertices];
     }
 }
 
@@ -71,13 +77,22 @@ void main() {
         const vec3 own_normal = rest_normals[rest];
         vec3 normal = own_normal;
         position = rest_positions[rest];
-        morph(piece, vertex, position, normal);
+        const vec4 own_tangent = with_tangents ? rest_tangents[rest] : vec4(0);
+        vec3 tangent = own_tangent.xyz;
+        morph(piece, vertex, position, normal, tangent);
         const GpuTransform to_world = transformOf(piece, vertex);
         position = to_world.linear * position + to_world.position;
         // Cofactors: the inverse transpose times the determinant, finite where there is no inverse.
         const mat3 m = to_world.linear;
         const vec3 x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
-        normal = (dot(m[0], x) < 0.0 ? -1.0 : 1.0) * (x * normal.x + y * normal.y + z * normal.z);
+        const float side = dot(m[0], x) < 0.0 ? -1.0 : 1.0;
+        normal = side * (x * normal.x + y * normal.y + z * normal.z);
+        if (with_tangents) {
+            tangent = unitOr(m * tangent, vec3(0));
+            const uint place = params.first_tangent + 2u * at;
+            tangents[place] = tangent.xy;
+            tangents[place + 1u] = vec2(tangent.z, tangent == vec3(0) ? 0.0 : side * own_tangent.w);
+        }
         positions[at] = position;
         normals[at] = unitOr(normal, own_normal);
     }

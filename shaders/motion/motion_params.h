@@ -20,7 +20,7 @@ struct DeformPiece {
     uint influences;   ///< joints that pull at a vertex; 0: all follow the node
     uint first_influence;
     uint targets;
-    uint first_target;  ///< of each target the positions, then the normals of all vertices
+    uint first_target;  ///< of each target the positions, then the normals, then the tangents if there are any
     uint first_weight;
     uint flat_shaded;
 };
@@ -37,8 +37,9 @@ struct DeformParams {
     uint groups;
     uint first_triangle;  ///< of all pieces
     uint triangles;
+    uint first_tangent;  ///< in the buffer of texture coordinates
 };
-SHARED_SIZE(DeformParams, 16);
+SHARED_SIZE(DeformParams, 20);
 
 /// Parameters of all water_* passes: see Water of src/scene/generated.h.
 struct WaterParams {

@@ -2,7 +2,6 @@
 #ifndef PEELRAY_BRANCHES_GLSL
 #define PEELRAY_BRANCHES_GLSL
 
-#include "common/material.h"
 #include "path/frame.h"
 #include "path/interface.glsl"
 #include "path/path_params.h"
@@ -23,14 +22,14 @@ bool samplesMicrofacets();
 /// The half vector of a reflection.
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
-float tracedPart(GpuMaterial m);
+float tracedPart(Material m);
 /// Sets `traced`.
 void decide(inout Branch branch, vec3 path_weight, uint effect);
 
 /// Both branches of a surface, and what it sends by itself.
 vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
-    const GpuMaterial m = materials[s.material];
+    const Material m = materialOf(s);
     if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
     const vec3 view = -incoming;
     const bool thin = (m.flags & MATERIAL_THIN) != 0u;

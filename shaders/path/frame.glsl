@@ -1,6 +1,5 @@
 // Access to the scene during a frame: materials, textures, environment, and the surface at a hit.
-// Include after the buffers it reads: frame, materials, texture_infos, texels, normals, uvs, colors, triangle_materials,
-// positions, triangles, instances, environment. Directions point away from the surface.
+// Include after scene_buffers.glsl. Directions point away from the surface.
 #ifndef PEELRAY_FRAME_GLSL
 #define PEELRAY_FRAME_GLSL
 
@@ -11,20 +10,24 @@
 
 #include "common/placed.glsl"
 #include "path/shading.glsl"
-#include "common/textures.glsl"
+#include "common/material.glsl"
 
 /// What shading needs to know of a hit.
 struct Surface {
     vec3 position;
     vec3 geometric;    ///< unit normal of the triangle, on the ray's side
-    vec3 normal;       ///< interpolated, unit, on the ray's side
+    vec3 normal;       ///< interpolated and bent by the normal texture, unit, on the ray's side
     vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
     vec3 base_color;
     float error;       ///< bound on the position's rounding error, world units
     float offset;      ///< height above it from which secondary rays count, world units (planar hits)
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
+    TextureFactors factors;
 };
+
+/// The surface's material, with its textures.
+Material materialOf(Surface s) { return evaluate(s.material, s.factors); }
 
 /// How far the position is lifted to the plane through a corner along the corner's normal; `p`: from the corner.
 vec3 lifted(vec3 p, vec3 normal, vec3 geometric) {
@@ -44,6 +47,25 @@ vec3 placedNormal(mat3 cofactors, vec3 n) {
     return dot(turned, turned) > 0.0 ? normalize(turned) : n;
 }
 
+vec3 directionOr(vec3 v, vec3 otherwise) { return dot(v, v) > 0.0 ? normalize(v) : otherwise; }
+
+/// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there are no tangents. As
+/// MikkTSpace has it, nothing is made unit before the sum.
+vec3 bentNormal(uint material, uvec3 corners, vec3 weights, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
+    const vec4 ta = tangentOf(material, corners.x), tb = tangentOf(material, corners.y), tc = tangentOf(material, corners.z);
+    vec3 a = ta.xyz, b = tb.xyz, c = tc.xyz;
+    if (linear != mat3(1)) {
+        a = directionOr(linear * a, vec3(0));
+        b = directionOr(linear * b, vec3(0));
+        c = directionOr(linear * c, vec3(0));
+    }
+    const vec3 tangent = a * weights.x + b * weights.y + c * weights.z;
+    const float side = (ta.w * weights.x + tb.w * weights.y + tc.w * weights.z) * turned;
+    if (side == 0.0 || dot(tangent, tangent) == 0.0) return otherwise;
+    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, corners, weights);
+    return directionOr(tangent * parts.x + bitangent * parts.y + normal * parts.z, otherwise);
+}
+
 Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     Surface s;
     const uvec3 corners = triangles[triangle];
@@ -51,9 +73,10 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     vec3 na = normals[corners.x], nb = normals[corners.y], nc = normals[corners.z];
     vec3 reach = max(abs(a), max(abs(b), abs(c)));
     float turned = 1.0;
+    mat3 linear = mat3(1);
     if (instances[instance].moved != 0u) {
         const GpuTransform to_world = instances[instance].to_world;
-        const mat3 m = to_world.linear;
+        const mat3 m = linear = to_world.linear;
         reach = mat3(abs(m[0]), abs(m[1]), abs(m[2])) * reach + abs(to_world.position);
         a = placedFrom(to_world, a, vec3(0));
         b = placedFrom(to_world, b, vec3(0));
@@ -71,23 +94,21 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     s.offset = frame[0].surface_offset * instances[instance].voxel + frame[0].tolerance;
     const vec3 cross_product = turned * cross(b - a, c - a);
     const float size = length(cross_product);
-    vec3 normal = na * weights.x + nb * weights.y + nc * weights.z;
-    normal = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0, 1, 0);
+    const vec3 interpolated = na * weights.x + nb * weights.y + nc * weights.z;
+    const vec3 normal = dot(interpolated, interpolated) > 0.0 ? normalize(interpolated) : vec3(0, 1, 0);
     s.geometric = size > 0.0 ? cross_product / size : normal;
     s.front = dot(s.geometric, direction) < 0.0;
     if (!s.front) s.geometric = -s.geometric;
     // The interpolated normal may disagree with the winding in careless files: it follows the triangle. One that lies in
     // the triangle's plane stays, whatever rounding makes of its side.
     const float side = dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1.0 : 1.0;
-    s.normal = visibleNormal(normal * side, s.geometric, -direction);
-    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
+    vec3 bent = normal;
     s.material = triangle_materials[triangle];
-    s.base_color = materials[s.material].base_color;
-    if ((materials[s.material].flags & MATERIAL_COLORED) != 0u)
-        s.base_color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
-    const int texture_index = materials[s.material].texture;
-    if (texture_index >= 0)
-        s.base_color *= sampleTexture(texture_index, uvs[corners.x] * weights.x + uvs[corners.y] * weights.y + uvs[corners.z] * weights.z).rgb;
+    if (bendsNormals(s.material)) bent = bentNormal(s.material, corners, weights, linear, turned, interpolated, normal);
+    s.normal = visibleNormal(bent * side, s.geometric, -direction);
+    s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
+    s.base_color = baseColor(s.material, corners, weights);
+    s.factors = textureFactors(s.material, corners, weights);
     return s;
 }
 
@@ -139,7 +160,7 @@ vec3 environmentIrradiance(vec3 n) {
 /// Light left after a ray of this RayState::medium went the distance `t` (Beer and Lambert).
 vec3 transmittance(uint medium, float t) {
     medium &= ~RAY_SEES_SUN;
-    return medium == MEDIUM_NONE ? vec3(1) : exp(-materials[medium].absorption * t);
+    return medium == MEDIUM_NONE ? vec3(1) : exp(-materialAbsorption(medium) * t);
 }
 
 /// A ray along `direction` as far as `reach` from the point `start` of a surface. It starts off the triangle's plane by the

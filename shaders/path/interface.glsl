@@ -2,19 +2,19 @@
 #ifndef PEELRAY_INTERFACE_GLSL
 #define PEELRAY_INTERFACE_GLSL
 
-#include "common/material.h"
+#include "common/material.glsl"
 #include "path/shading.glsl"
 
 /// Does light pass through the material?
-bool transmits(GpuMaterial m) { return m.transmission > 0.0 && m.metallic < 1.0; }
+bool transmits(Material m) { return m.transmission > 0.0 && m.metallic < 1.0; }
 
 /// Is a ray that meets the material's surface inside of its volume? Volumes are left where the ray meets their back; opaque and
 /// thin surfaces are the same from both sides.
-bool leavesVolume(GpuMaterial m, bool front) { return transmits(m) && (m.flags & MATERIAL_THIN) == 0u && !front; }
+bool leavesVolume(Material m, bool front) { return transmits(m) && (m.flags & MATERIAL_THIN) == 0u && !front; }
 
 /// Reflectance of one face at `cosine` ≥ 0 on the incoming side; `leaving`: from inside of the volume. By the index of refraction
 /// alone it is the exact one; KHR_materials_specular and an infinite index are Schlick's between f0 and f90, at the angle outside.
-vec3 dielectricReflectance(GpuMaterial m, float cosine, bool leaving) {
+vec3 dielectricReflectance(Material m, float cosine, bool leaving) {
     const float eta = leaving ? 1.0 / m.ior : m.ior;
     if ((m.flags & MATERIAL_SCHLICK) == 0u) return vec3(fresnelDielectric(cosine, eta));
     if (leaving) {
@@ -26,7 +26,7 @@ vec3 dielectricReflectance(GpuMaterial m, float cosine, bool leaving) {
 }
 
 /// The same of what a ray meets: of a thin wall both faces.
-vec3 wallReflectance(GpuMaterial m, float cosine, bool leaving) {
+vec3 wallReflectance(Material m, float cosine, bool leaving) {
     const vec3 face = dielectricReflectance(m, cosine, leaving);
     return transmits(m) && (m.flags & MATERIAL_THIN) != 0u ? 2.0 * face / (1.0 + face) : face;
 }
@@ -39,13 +39,13 @@ struct Interface {
 };
 
 /// Of a body in air.
-Interface interfaceInAir(GpuMaterial m, bool front) {
+Interface interfaceInAir(Material m, bool front) {
     const bool leaving = leavesVolume(m, front);
     return Interface(leaving ? 1.0 / m.ior : m.ior, leaving, false);
 }
 
 /// Between two media by their indices; in air as the material says.
-vec3 interfaceReflectance(GpuMaterial m, Interface face, float cosine) {
+vec3 interfaceReflectance(Material m, Interface face, float cosine) {
     return face.between ? vec3(fresnelDielectric(cosine, face.eta)) : wallReflectance(m, cosine, face.leaving);
 }
 

@@ -2,7 +2,6 @@
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
-#include "common/material.h"
 #include "path/frame.h"
 #include "path/interface.glsl"
 #include "path/split_sum.glsl"
@@ -28,7 +27,7 @@ vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distan
 }
 
 /// Reflected share of light from `to_light`, times the cosine.
-vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
+vec3 reflectance(Surface s, Material m, vec3 view, vec3 to_light) {
     const float n_l = dot(s.normal, to_light);
     if (n_l <= 0.0) return vec3(0);
     const vec3 h = normalize(view + to_light);
@@ -45,21 +44,21 @@ vec3 reflectance(Surface s, GpuMaterial m, vec3 view, vec3 to_light) {
 
 /// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light. The
 /// shading normal alone says whether the surface faces the light: the triangle's would cut it off in facets.
-vec3 lampLight(uint index, Surface s, GpuMaterial m, vec3 view, out vec3 direction) {
+vec3 lampLight(uint index, Surface s, Material m, vec3 view, out vec3 direction) {
     float distance;
     const vec3 light = lightAt(lights[index], s.position, direction, distance);
     return light == vec3(0) ? light : light * reflectance(s, m, view, direction);
 }
 
 /// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it.
-vec3 skyLight(Surface s, GpuMaterial m, vec3 view) {
+vec3 skyLight(Surface s, Material m, vec3 view) {
     const vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
     if (diffuse == vec3(0)) return vec3(0);
     // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
     const vec3 mirrored = m.roughness < MIRROR_ROUGHNESS ? dielectricReflectance(m, cosine, leavesVolume(m, s.front))
                                                          : dielectricAlbedo(m, splitSum(m.roughness, cosine));
-    return diffuse * (1.0 - largest(mirrored)) * environmentIrradiance(s.normal);
+    return diffuse * m.occlusion * (1.0 - largest(mirrored)) * environmentIrradiance(s.normal);
 }
 
 #endif

@@ -72,7 +72,7 @@ uint mediaMaterial(MediaStack stack) {
 uint mediaRank(uint material) { return media_ranks[1u + material]; }
 
 /// Index of refraction of a medium.
-float mediaIndex(uint material) { return material == MEDIUM_NONE ? 1.0 : materials[material].ior; }
+float mediaIndex(uint material) { return material == MEDIUM_NONE ? 1.0 : materialIndex(material); }
 
 /// A wall of media as a ray meets it.
 Interface mediaInterface(MediaWall wall) {

@@ -31,7 +31,7 @@ struct MediaGroup {
 };
 
 vec3 mediaTint(Surface s) {
-    const GpuMaterial m = materials[s.material];
+    const Material m = materialOf(s);
     return (1.0 - m.metallic) * m.transmission * s.base_color;
 }
 
@@ -146,8 +146,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
         if (hit.triangle != PEELRAY_MISS) {
             const Surface beside = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction);
             const bool parallel = abs(dot(beside.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
-            const GpuMaterial material = materials[beside.material];
-            if (!wall && parallel && (material.transmission == 0.0 || material.metallic == 1.0)) {
+            if (!wall && parallel && !transmits(materialOf(beside))) {
                 m.hit = hit;
                 m.wall = false;
                 return m;

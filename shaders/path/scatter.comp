@@ -2,7 +2,6 @@
 // may reach it, and the tree's node. Misses see the environment. The camera's level makes its rays itself, from what the pixels see.
 #version 460
 #include "common/common.glsl"
-#include "common/material.h"
 #include "common/ray.h"
 #include "path/frame.h"
 #include "path/media_params.h"
@@ -65,7 +64,7 @@ vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
 }
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
-float tracedPart(GpuMaterial m) {
+float tracedPart(Material m) {
     if (frame[0].spp > 1u) return m.roughness < TRACED_ROUGHNESS || m.metallic > MOSTLY_METAL ? 1.0 : 0.0;
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, m.roughness);
 }
@@ -116,14 +115,14 @@ void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light
 }
 
 /// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
-vec3 arrivingLight(uint index, Surface s, GpuMaterial m, vec3 view, SurfaceId from, out vec3 direction) {
+vec3 arrivingLight(uint index, Surface s, Material m, vec3 view, SurfaceId from, out vec3 direction) {
     const vec3 light = lampLight(index, s, m, view, direction);
     const bool blocked = light != vec3(0) && (frame[0].effects & EFFECT_SHADOW) != 0u && blocksItself(s, from, direction);
     return blocked ? vec3(0) : light;
 }
 
 /// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
-vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
+vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
     rays = sky_rays = 0u;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
@@ -144,7 +143,7 @@ vec3 unshadowedLight(Surface s, GpuMaterial m, vec3 view, SurfaceId from, out ui
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from.
-void emitLights(uint slot, Surface s, GpuMaterial m, vec3 view, vec3 share, MediaStack stack, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack stack, SurfaceId from, uint seed) {
     if ((frame[0].effects & EFFECT_SHADOW) != 0u)
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
@@ -222,14 +221,14 @@ Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
     c.lost = wall.passed * transmittance(medium, t);
     if (wall.lift > 0.0) c.surface.error = wall.lift;
     const bool is_wall = mediaRank(c.surface.material) != MEDIA_NO_RANK;
-    return is_wall ? mediaInterface(wall) : interfaceInAir(materials[c.surface.material], c.surface.front);
+    return is_wall ? mediaInterface(wall) : interfaceInAir(materialOf(c.surface), c.surface.front);
 }
 
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
 void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
     c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
-    Interface face = interfaceInAir(materials[c.surface.material], c.surface.front);
+    Interface face = interfaceInAir(materialOf(c.surface), c.surface.front);
     vec3 beside = vec3(1);
     if (layered)
         face = mediaAround(i, hit.t, c, beside);
@@ -243,10 +242,11 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
     if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, 0.0);
     uint sky_rays = 0u;
-    if ((materials[c.surface.material].flags & MATERIAL_UNLIT) != 0u)
+    const Material m = materialOf(c.surface);
+    if ((m.flags & MATERIAL_UNLIT) != 0u)
         c.node.flags |= NODE_UNLIT;
     else
-        c.node.radiance += unshadowedLight(c.surface, materials[c.surface.material], -ray.direction, c.from, c.light_rays, sky_rays);
+        c.node.radiance += unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
     if (isCut(c.reflection, c.path_weight, EFFECT_REFLECTION)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, c.path_weight, EFFECT_REFRACTION)) atomicAdd(group_cut[1], 1u);
@@ -301,7 +301,7 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materials[c.surface.material], -ray.direction, c.lost, c.before, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.lost, c.before, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -1,12 +1,13 @@
 // The scene's buffers at bindings SCENE_FIRST_BINDING ...; positions, triangles and instances come with
 // cube_fetch.glsl or here.
+#define MATERIAL_EVALUATION
 #include "common/instance.h"
 #include "common/material.h"
 #include "path/frame.h"
 BUFFER(readonly, SCENE_FIRST_BINDING + 0, Frame, frame)
 BUFFER(readonly, SCENE_FIRST_BINDING + 1, GpuMaterial, materials)
 BUFFER(readonly, SCENE_FIRST_BINDING + 2, GpuTexture, texture_infos)
-BUFFER(readonly, SCENE_FIRST_BINDING + 3, uint, texels)
+IMAGE(SCENE_FIRST_BINDING + 3, utexture2DArray, texels)
 BUFFER(readonly, SCENE_FIRST_BINDING + 4, vec3, normals)
 BUFFER(readonly, SCENE_FIRST_BINDING + 5, vec2, uvs)
 BUFFER(readonly, SCENE_FIRST_BINDING + 6, vec4, colors)

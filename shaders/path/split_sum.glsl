@@ -2,7 +2,7 @@
 #ifndef PEELRAY_SPLIT_SUM_GLSL
 #define PEELRAY_SPLIT_SUM_GLSL
 
-#include "common/material.h"
+#include "common/material.glsl"
 #include "path/split_sum.h"
 
 /// The table's four means, bilinear.
@@ -15,7 +15,7 @@ vec4 splitSum(float roughness, float cosine) {
 }
 
 /// Share of white light that the dielectric part of a rough surface reflects.
-vec3 dielectricAlbedo(GpuMaterial m, vec4 means) {
+vec3 dielectricAlbedo(Material m, vec4 means) {
     const vec3 schlick = m.f0 * means.x + (m.f90 - m.f0) * means.z;
     return (m.flags & MATERIAL_SCHLICK) != 0u ? schlick : vec3(clamp(m.f0.x * means.x + dot(m.fresnel_fit, means.yzw), 0.0, 1.0));
 }

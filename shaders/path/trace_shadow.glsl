@@ -4,7 +4,6 @@
 #ifndef PEELRAY_TRACE_SHADOW_GLSL
 #define PEELRAY_TRACE_SHADOW_GLSL
 
-#include "common/material.h"
 #include "common/ray.h"
 #include "ldc/trace_params.h"
 #include "path/path_params.h"
@@ -32,14 +31,15 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         const PeelrayHit hit = meeting.hit;
         share *= meeting.at.passed;
         if (hit.triangle == PEELRAY_MISS) return share;
-        const GpuMaterial m = materials[triangle_materials[hit.triangle]];
-        if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
+        if (!mayTransmit(hit.triangle)) return vec3(0);
         const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction);
+        const Material m = materialOf(s);
+        if (!transmits(m)) return vec3(0);
         const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
         const vec3 reflected = interfaceReflectance(m, face, clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
         share *= (1.0 - reflected) * mediaTint(s) * meeting.at.beside;
         const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.at.before);
-        if (medium != MEDIUM_NONE) share *= exp(-materials[medium].absorption * (layer == 0u ? hit.t : hit.t - ray.tmin));
+        if (medium != MEDIUM_NONE) share *= exp(-materialAbsorption(medium) * (layer == 0u ? hit.t : hit.t - ray.tmin));
         if (largest(share) < LEAST_WEIGHT) return vec3(0);
         stack = meeting.wall ? meeting.at.behind : meeting.at.before;
         ray.tmin = meeting.beyond;
@@ -58,9 +58,10 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
         const PeelrayHit hit = traceShadow(ray, skip, false);
         if (hit.triangle == PEELRAY_MISS) return share;
-        const GpuMaterial m = materials[triangle_materials[hit.triangle]];
-        if (m.transmission == 0.0 || m.metallic == 1.0) return vec3(0);
+        if (!mayTransmit(hit.triangle)) return vec3(0);
         const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction);
+        const Material m = materialOf(s);
+        if (!transmits(m)) return vec3(0);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         const vec3 reflected = wallReflectance(m, clamp(-dot(ray.direction, s.normal), 0.0, 1.0), leavesVolume(m, s.front));
         share *= (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color;

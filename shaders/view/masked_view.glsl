@@ -8,7 +8,7 @@ BUFFER(readonly, 2, uvec3, triangles)
 BUFFER(readonly, 3, GpuInstance, instances)
 #define BASE_COLOR_FIRST_BINDING 4
 #include "common/base_color_buffers.glsl"
-#include "common/alpha_test.glsl"
+#include "common/material.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
 

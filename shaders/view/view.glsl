@@ -18,7 +18,7 @@ BUFFER(, 6, uint, queue)
 BUFFER(, 7, uvec2, blocks)
 #define BASE_COLOR_FIRST_BINDING 8
 #include "common/base_color_buffers.glsl"
-#include "common/alpha_test.glsl"
+#include "common/material.glsl"
 #include "view/camera.glsl"
 #include "view/drawn.glsl"
 #include "peelray/intersect.glsl"

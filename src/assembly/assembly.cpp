@@ -114,6 +114,8 @@ class Assembler {
                 out_.shown += primitive.triangles.size();
                 vertices += primitive.positions.size();
                 has_colors_ |= !primitive.colors.empty();
+                has_tangents_ |= !primitive.tangents.empty();
+                if (primitive.more_uvs.size() > out_.more_uvs.size()) out_.more_uvs.resize(primitive.more_uvs.size());
             }
             objects_[n] = objects;
             objects += out_.shown > before;
@@ -223,6 +225,14 @@ class Assembler {
         out_.normals.insert(out_.normals.end(), vertices.normals.begin(), vertices.normals.end());
         out_.uvs.insert(out_.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
         out_.uvs.resize(out_.positions.size(), glm::vec2(0));
+        for (size_t set = 0; set < out_.more_uvs.size(); set++) {
+            std::vector<glm::vec2>& all = out_.more_uvs[set];
+            if (set < primitive.more_uvs.size())
+                all.insert(all.end(), primitive.more_uvs[set].begin(), primitive.more_uvs[set].end());
+            all.resize(out_.positions.size(), glm::vec2(0));
+        }
+        out_.tangents.insert(out_.tangents.end(), vertices.tangents.begin(), vertices.tangents.end());
+        if (has_tangents_) out_.tangents.resize(out_.positions.size(), glm::vec4(0));
         if (has_colors_) {
             out_.colors.insert(out_.colors.end(), primitive.colors.begin(), primitive.colors.end());
             out_.colors.resize(out_.positions.size(), glm::vec4(1));
@@ -321,7 +331,7 @@ class Assembler {
     std::vector<Still> still_;
     std::vector<std::vector<uint32_t>> first_ids_;
     std::vector<uint32_t> objects_;
-    bool has_colors_ = false;
+    bool has_colors_ = false, has_tangents_ = false;
     std::set<int> generated_;                  ///< nodes that are placed by passes of their own
     std::vector<int> waters_;                  ///< nodes of Scene::generated.waters
     std::map<int, std::vector<Place>> fixed_;  ///< by anchor

@@ -34,7 +34,9 @@ struct Assembly {
 
     std::vector<glm::vec3> positions, normals;  ///< one per vertex; of bodies that deform: of the moment of assembly
     std::vector<glm::vec2> uvs;
-    std::vector<glm::vec4> colors;  ///< or empty: no primitive has colours
+    std::vector<std::vector<glm::vec2>> more_uvs;  ///< sets 1, 2, … of texture coordinates
+    std::vector<glm::vec4> tangents;               ///< or empty: no primitive has any; of the moment, as positions
+    std::vector<glm::vec4> colors;                 ///< or empty: no primitive has colours
     std::vector<glm::uvec3> triangles;
     std::vector<uint32_t> materials, ids, objects;  ///< one per triangle
 

@@ -30,7 +30,11 @@ std::string named(const std::string& name) {
 std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
                                    m.base_color.y, m.base_color.z, m.metallic, m.roughness);
-    if (m.base_color_texture >= 0) text += fmt::format(", texture {}", m.base_color_texture);
+    constexpr const char* uses[] = {"",           "emission ", "metal ",     "roughness ", "transmission ",
+                                    "thickness ", "normal ",   "occlusion ", "specular ",  "specular colour "};
+    for (size_t i = 0; i < material_textures.size(); i++)
+        if (const MaterialTexture& used = m.*material_textures[i])
+            text += fmt::format(", {}texture {}", uses[i], used.texture);
     if (m.alpha_cutoff > 0) text += fmt::format(", holes where alpha is below {:.3g}", m.alpha_cutoff);
     if (m.emissive != glm::vec3(0))
         text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);

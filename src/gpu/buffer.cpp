@@ -85,7 +85,7 @@ void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64
 }
 
 Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format,
-                 VkImageUsageFlags usage, VkImageAspectFlags aspect, uint32_t layers)
+                 VkImageUsageFlags usage, VkImageAspectFlags aspect, uint32_t layers, bool array)
     : device_(&device), width_(width), height_(height), layers_(layers), format_(format), aspect_(aspect) {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
@@ -102,7 +102,7 @@ Image2D::Image2D(Device& device, const std::string& name, uint32_t width, uint32
         memory_ = device.allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, name);
         allocated_ = needs.size;
         check_vulkan(device.vk.vkBindImageMemory(device.handle, handle_, memory_, 0), "binding the image " + name);
-        view_ = create_view(layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, layers);
+        view_ = create_view(layers > 1 || array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, layers);
         for (uint32_t i = 0; layers > 1 && i < layers; i++)
             layer_views_.push_back(create_view(VK_IMAGE_VIEW_TYPE_2D, i, 1));
     } catch (...) {

@@ -53,8 +53,9 @@ void ensure_size(Device& device, Buffer& buffer, const std::string& name, uint64
 class Image2D {
   public:
     Image2D() = default;
+    /// `array`: shaders see one layer as an array, too.
     Image2D(Device& device, const std::string& name, uint32_t width, uint32_t height, VkFormat format,
-            VkImageUsageFlags usage, VkImageAspectFlags aspect, uint32_t layers = 1);
+            VkImageUsageFlags usage, VkImageAspectFlags aspect, uint32_t layers = 1, bool array = false);
     ~Image2D() { reset(); }
     Image2D(Image2D&& other) noexcept { *this = std::move(other); }
     Image2D& operator=(Image2D&& other) noexcept;
@@ -64,7 +65,7 @@ class Image2D {
     VkFormat format() const { return format_; }
     VkImageAspectFlags aspect() const { return aspect_; }
     uint32_t layers() const { return layers_; }
-    /// Of all layers; an array where there is more than one.
+    /// Of all layers; an array where there is more than one, or it was asked for.
     VkImageView view() const { return view_; }
     /// Of one of several layers.
     VkImageView layer_view(uint32_t layer) const { return layer_views_[layer]; }

@@ -11,11 +11,19 @@ constexpr uint32_t kSetsPerPool = 256, kBindingsPerSet = 16;
 
 }  // namespace
 
+Binding Binding::if_used(std::string_view name, const Image2D& image) {
+    Binding binding(name, image);
+    binding.optional = true;
+    if (!image) binding.image = nullptr;
+    return binding;
+}
+
 std::vector<Binding> if_used(std::span<const Binding> bindings) {
     std::vector<Binding> all(bindings.begin(), bindings.end());
     for (Binding& binding : all) {
         binding.optional = true;
         if (binding.buffer && !*binding.buffer) binding.buffer = nullptr;
+        if (binding.image && !*binding.image) binding.image = nullptr;
     }
     return all;
 }
@@ -55,11 +63,11 @@ std::vector<const Binding*> Commands::match(const PassBase& pass, std::span<cons
         const auto given = std::ranges::find(bindings, want.name, &Binding::name);
         if (given == bindings.end())
             fail("the pass {} was not given '{}' (a programming error)", pass.name(), want.name);
-        const bool is_buffer = !want.structure && !want.image;
         const bool is_given = want.structure ? given->structure && *given->structure
                               : want.image   ? given->image && *given->image
                                              : given->buffer && *given->buffer;
-        const bool takes_dummy = is_buffer && given->optional && !given->image && !given->structure;
+        const bool takes_dummy =
+            given->optional && !given->image && !given->buffer && !given->structure && !want.structure;
         if (!is_given && !takes_dummy)
             fail("the pass {} was given no {} for '{}' (a programming error)", pass.name(),
                  want.structure ? "acceleration structure"
@@ -69,6 +77,10 @@ std::vector<const Binding*> Commands::match(const PassBase& pass, std::span<cons
         matched.push_back(&*given);
     }
     return matched;
+}
+
+const Image2D& Commands::image_of(const Binding& binding) const {
+    return binding.image ? *binding.image : device_.dummy_image();
 }
 
 VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding* const> given) {
@@ -81,8 +93,8 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding* co
     std::vector<VkWriteDescriptorSet> writes;
     for (size_t i = 0; i < wanted.size(); i++) {
         const Binding& binding = *given[i];
-        if (binding.image)
-            image_infos[i] = {VK_NULL_HANDLE, binding.image->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        if (wanted[i].image)
+            image_infos[i] = {VK_NULL_HANDLE, image_of(binding).view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         else if (binding.structure)
             structures[i] = binding.structure->handle();
         else
@@ -111,8 +123,8 @@ VkDescriptorSet Commands::bind(const PassBase& pass, std::span<const Binding* co
 void Commands::touch(const PassBase& pass, std::span<const Binding* const> given, bool& hazard) {
     for (size_t i = 0; i < given.size(); i++) {
         const ShaderBinding& wanted = pass.interface().bindings[i];
-        if (given[i]->image)
-            touch(*given[i]->image, false, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, hazard);
+        if (wanted.image)
+            touch(image_of(*given[i]), false, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, hazard);
         else if (given[i]->structure)
             touch(*given[i]->structure, hazard);
         else if (given[i]->buffer)
@@ -126,8 +138,8 @@ void Commands::mark(const PassBase& pass, std::span<const Binding* const> given)
         if (given[i]->structure) {
             access(given[i]->structure->storage()).read = true;
             for (const Buffer* shown : given[i]->structure->shown) access(*shown).read = true;
-        } else if (given[i]->image || given[i]->buffer) {
-            Access& done = given[i]->image ? access(*given[i]->image) : access(*given[i]->buffer);
+        } else if (wanted.image || given[i]->buffer) {
+            Access& done = wanted.image ? access(image_of(*given[i])) : access(*given[i]->buffer);
             done.read |= wanted.reads;
             done.written |= wanted.writes;
         }

@@ -219,6 +219,42 @@ void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> dat
     }
 }
 
+void Commands::upload(const Image2D& image, std::span<const uint32_t> texels, uint64_t first_row) {
+    submit();
+    const MemoryPart part(device_, "staging");
+    const uint64_t width = image.width(), most_rows = std::max<uint64_t>(1, kStagingBytes / (4 * width));
+    for (uint64_t row = first_row; !texels.empty();) {
+        // Whole rows, then what is left of the last one: a copy is a rectangle of one layer.
+        const uint64_t left = image.height() - row % image.height(), rows = std::min(most_rows, left);
+        const size_t taken = std::min<uint64_t>(texels.size(), rows * width);
+        if (!staging_up_ || staging_up_.bytes() < taken * 4)
+            staging_up_ = Buffer(device_, "upload staging", taken * 4, Buffer::Where::upload);
+        std::memcpy(staging_up_.mapped(), texels.data(), taken * 4);
+        std::vector<VkBufferImageCopy> regions;
+        const auto add = [&](uint64_t first, uint64_t columns, uint64_t lines) {
+            VkBufferImageCopy region{first * width * 4};
+            region.imageSubresource = {image.aspect(), 0, uint32_t(row / image.height()), 1};
+            region.imageOffset = {0, int32_t(row % image.height() + first), 0};
+            region.imageExtent = {uint32_t(columns), uint32_t(lines), 1};
+            if (columns && lines) regions.push_back(region);
+        };
+        add(0, width, taken / width);
+        add(taken / width, taken % width, 1);
+        begin();
+        bool hazard = false;
+        touch(staging_up_, true, false, hazard);
+        touch(image, true, false, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, hazard);
+        barrier_if(hazard, kTransfer);
+        access(staging_up_).read = access(image).written = true;
+        device_.vk.vkCmdCopyBufferToImage(commands_, staging_up_.handle(), image.handle(),
+                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
+                                          regions.data());
+        submit();
+        texels = texels.subspan(taken);
+        row += rows;
+    }
+}
+
 void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, uint64_t offset) {
     if (offset + data.size() > buffer.bytes())
         fail("a download of {} is too long (a programming error)", buffer.name());

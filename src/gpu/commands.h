@@ -34,6 +34,7 @@ struct Binding {
     /// given it.
     static Binding if_used(std::string_view name, const Buffer* buffer) { return Binding(name, buffer); }
     static Binding if_used(std::string_view name, const Buffer& buffer) { return Binding(name, &buffer); }
+    static Binding if_used(std::string_view name, const Image2D& image);
 
   private:
     Binding(std::string_view n, const Buffer* b) : name(n), buffer(b && *b ? b : nullptr), optional(true) {}
@@ -180,6 +181,8 @@ class Commands {
     void upload(const Buffer& buffer, std::span<const T> data, uint64_t offset = 0) {
         upload_bytes(buffer, std::as_bytes(data), offset);
     }
+    /// The same of texels of four bytes, row by row from `first_row` on, counted through all layers.
+    void upload(const Image2D& image, std::span<const uint32_t> texels, uint64_t first_row);
     /// Downloads `count` elements from byte `offset`; submits at once.
     template <typename T>
     std::vector<T> download(const Buffer& buffer, uint64_t count, uint64_t offset = 0) {
@@ -211,6 +214,7 @@ class Commands {
     void barrier();
     /// What is given to each binding of the pass, in their order. Throws Error if one is missing or one too many.
     static std::vector<const Binding*> match(const PassBase& pass, std::span<const Binding> bindings);
+    const Image2D& image_of(const Binding& binding) const;
     VkDescriptorSet bind(const PassBase& pass, std::span<const Binding* const> given);
     /// Looks for hazards, before the pass's barrier, or notes what the pass does, after it.
     void touch(const PassBase& pass, std::span<const Binding* const> given, bool& hazard);

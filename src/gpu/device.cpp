@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "gpu/buffer.h"
 #include "gpu/instance.h"
 #include "gpu/pass.h"
 #include "gpu/pipeline_cache.h"
@@ -192,6 +193,7 @@ void Device::lower_limits(const DeviceOptions& options) {
 Device::~Device() {
     vk.vkDeviceWaitIdle(handle);
     state_.reset();
+    dummy_image_.reset();
     for (VkBuffer dummy : dummies_) vk.vkDestroyBuffer(handle, dummy, nullptr);
     for (VkDeviceMemory memory : dummy_memory_) vk.vkFreeMemory(handle, memory, nullptr);
     vk.vkDestroyDevice(handle, nullptr);
@@ -243,6 +245,11 @@ void Device::create_dummies() {
         dummy_memory_[i] = allocate_uncounted(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, "a dummy buffer", false);
         check_vulkan(vk.vkBindBufferMemory(handle, dummies_[i], dummy_memory_[i], 0), "binding a dummy buffer");
     }
+    dummy_image_ = std::make_unique<Image2D>(*this, "dummy", 1, 1, VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_SAMPLED_BIT,
+                                             VK_IMAGE_ASPECT_COLOR_BIT, 1, true);
+    held_.clear();
+    at_peak_.clear();
+    allocated_ = peak_allocated_ = 0;
 }
 
 VkDeviceMemory Device::allocate_uncounted(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,

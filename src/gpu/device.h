@@ -15,6 +15,7 @@
 
 namespace peelray {
 
+class Image2D;
 class Pass;
 class PipelineCache;
 class RasterPass;
@@ -135,6 +136,7 @@ class Device {
     /// shader could write have one of their own: by what is declared alone, a write that nobody does would otherwise
     /// seem to need a barrier before the reads that nobody does.
     VkBuffer dummy(bool written) const { return dummies_[written]; }
+    const Image2D& dummy_image() const { return *dummy_image_; }
     /// `addressed`: of a buffer with VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags nice,
                             std::string_view what, bool addressed = false);
@@ -153,6 +155,7 @@ class Device {
                                                      const VkDebugUtilsMessengerCallbackDataEXT*, void*);
 
     DeviceInfo info_;
+    std::unique_ptr<Image2D> dummy_image_;
     std::array<VkBuffer, 2> dummies_{};
     std::array<VkDeviceMemory, 2> dummy_memory_{};
     VkPhysicalDeviceProperties properties_{};

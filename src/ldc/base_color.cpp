@@ -5,9 +5,12 @@
 namespace peelray {
 
 std::vector<Binding> base_color_bindings(const BaseColorBuffers& b) {
-    return {{"materials", b.materials}, {"texture_infos", b.texture_infos},
-            {"texels", b.texels},       {"uvs", b.uvs},
-            {"colors", b.colors},       {"triangle_materials", b.triangle_materials}};
+    return {{"materials", b.materials},
+            {"texture_infos", b.texture_infos},
+            Binding::if_used("texels", b.texels),
+            {"uvs", b.uvs},
+            {"colors", b.colors},
+            {"triangle_materials", b.triangle_materials}};
 }
 
 std::vector<Binding> with_hit_materials(std::span<const Binding> bindings, const TriangleBuffers& triangles) {

@@ -1,4 +1,4 @@
-// What gives the base colour of triangles and its alpha, on the device.
+// Materials of triangles and their textures, on the device.
 #pragma once
 
 #include <span>
@@ -12,12 +12,14 @@ struct TriangleBuffers;
 
 /// The bindings of shaders/common/base_color_buffers.glsl.
 struct BaseColorBuffers {
-    Buffer materials;           ///< GpuMaterial each
-    Buffer texture_infos;       ///< GpuTexture each
-    Buffer texels;              ///< uint32 each: sRGB-encoded colour and alpha
-    Buffer uvs;                 ///< vec2 per vertex
-    Buffer colors;              ///< vec4 per vertex; read where a material is MATERIAL_COLORED
-    Buffer triangle_materials;  ///< uint32 per triangle
+    Buffer materials;            ///< GpuMaterial each
+    Buffer texture_infos;        ///< GpuTexture each
+    Image2D texels;              ///< words of all textures (common/material.h, TEXEL_ROW_BITS)
+    Buffer uvs;                  ///< vec2 per vertex, set after set; then, if there are any, tangents, vec4 per vertex
+    Buffer colors;               ///< vec4 per vertex; read where a material is MATERIAL_COLORED
+    Buffer triangle_materials;   ///< uint32 per triangle
+    uint32_t first_tangent = 0;  ///< in `uvs`, counted in vec2
+    bool textured = false;       ///< some triangle's material has textures beside the base colour's
 
     uint64_t bytes() const {
         return materials.bytes() + texture_infos.bytes() + texels.bytes() + uvs.bytes() + colors.bytes() +

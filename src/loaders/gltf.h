@@ -17,19 +17,11 @@
 
 namespace peelray {
 
-/// Where a material takes its base colour's coordinates from.
-struct UvSource {
-    uint32_t set = 0;
-    glm::vec2 offset{0}, scale{1};
-    float rotation = 0;  ///< radians
-    bool used = false;   ///< false: the material has no base-colour texture
-};
-
 struct GltfLoader {
     GltfFile file;
     Scene scene;
     Tally ignored;
-    std::vector<UvSource> uv_sources;                            ///< per material
+    std::vector<std::vector<uint32_t>> uv_sets;  ///< per material: the TEXCOORD_ that its textures use, as they count
     std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
     std::optional<size_t> variant;                               ///< that which chooses the primitives' materials
     float point_size = 0;                                        ///< LoadOptions::point_size

@@ -116,11 +116,13 @@ Member within(double least, double most, Member member) {
     return member;
 }
 
-Member texture(const char* key) {
-    return object(key,
-                  {required(index("index", "textures")), whole("texCoord"),
-                   object("extensions", {object("KHR_texture_transform", {numbers("offset", 2), numbers("scale", 2),
-                                                                          number("rotation"), whole("texCoord")})})});
+Member texture(const char* key, const Members& more = {}) {
+    Members members = {
+        required(index("index", "textures")), whole("texCoord"),
+        object("extensions", {object("KHR_texture_transform", {numbers("offset", 2), numbers("scale", 2),
+                                                               number("rotation"), whole("texCoord")})})};
+    members.insert(members.end(), more.begin(), more.end());
+    return object(key, members);
 }
 
 /// What EXT_meshopt_compression says of a buffer view or a buffer.
@@ -177,8 +179,8 @@ Members material_members() {
         number("alphaCutoff"),
         flag("doubleSided"),
         within(0, 1, numbers("emissiveFactor", 3)),
-        texture("normalTexture"),
-        texture("occlusionTexture"),
+        texture("normalTexture", {number("scale")}),
+        texture("occlusionTexture", {within(0, 1, number("strength"))}),
         texture("emissiveTexture"),
         object("pbrMetallicRoughness", {within(0, 1, numbers("baseColorFactor", 4)),
                                         within(0, 1, number("metallicFactor")), within(0, 1, number("roughnessFactor")),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 #include "loaders/gltf.h"
@@ -49,10 +50,26 @@ Vector vector(const tinygltf::Value& object, const char* key, Vector missing) {
     return missing;
 }
 
-/// The texture that an extension's textureInfo shows, -1: none.
-int texture_index(const tinygltf::Value& object, const char* key) {
-    return object.Has(key) ? object.Get(key).Get("index").GetNumberAsInt() : -1;
-}
+/// A textureInfo, whoever gives it.
+struct TextureInfo {
+    int index = -1;
+    double set = 0;
+    const tinygltf::Value* transform = nullptr;
+
+    /// tinygltf's TextureInfo, NormalTextureInfo and OcclusionTextureInfo have the same members.
+    template <typename Info>
+    static TextureInfo of(const Info& info) {
+        return {info.index, double(info.texCoord), &extension(info.extensions, "KHR_texture_transform")};
+    }
+    /// An extension's member; none where it is missing.
+    static TextureInfo of(const tinygltf::Value& object, const char* key) {
+        if (!object.Has(key)) return {};
+        const tinygltf::Value& info = object.Get(key);
+        const tinygltf::Value& extensions = info.Get("extensions");
+        return {info.Get("index").GetNumberAsInt(), number(info, "texCoord", 0),
+                extensions.Has("KHR_texture_transform") ? &extensions.Get("KHR_texture_transform") : nullptr};
+    }
+};
 
 class MaterialReader {
   public:
@@ -67,11 +84,13 @@ class MaterialReader {
         read_transmission();
         read_reflectance();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
-        ignore(from_.normalTexture.index, "{} normal map{|s} ignored");
-        ignore(from_.occlusionTexture.index, "{} occlusion texture{|s} ignored");
+        material_.normal_texture = use(TextureInfo::of(from_.normalTexture));
+        material_.normal_scale = static_cast<float>(from_.normalTexture.scale);
+        material_.occlusion_texture = use(TextureInfo::of(from_.occlusionTexture));
+        material_.occlusion_strength = unit(from_.occlusionTexture.strength);
         read_alpha_mode();
         loader_.scene.materials.push_back(std::move(material_));
-        loader_.uv_sources.push_back(uv_);
+        loader_.uv_sets.push_back(std::move(uv_sets_));
     }
 
   private:
@@ -81,12 +100,10 @@ class MaterialReader {
         material_.alpha = unit(pbr.baseColorFactor[3]);
         material_.metallic = unit(pbr.metallicFactor);
         material_.roughness = unit(pbr.roughnessFactor);
-        if (pbr.baseColorTexture.index >= 0) read_base_color(pbr.baseColorTexture);
-        if (const auto mean = mean_of(pbr.metallicRoughnessTexture.index, false)) {
-            material_.roughness *= mean->y;
-            material_.metallic *= mean->z;
-            ++loader_.ignored["{} metallic-roughness texture{|s} replaced by {its|their} mean"];
-        }
+        material_.base_color_texture = use(TextureInfo::of(pbr.baseColorTexture), 0, true);
+        material_.roughness_texture = use(TextureInfo::of(pbr.metallicRoughnessTexture), 1);
+        material_.metallic_texture = material_.roughness_texture;
+        material_.metallic_texture.channel = 2;
     }
 
     void read_alpha_mode() {
@@ -105,22 +122,16 @@ class MaterialReader {
         material_.emissive =
             to_vec3(from_.emissiveFactor) * static_cast<float>(number(strength, "emissiveStrength", 1));
         material_.emissive = glm::max(material_.emissive, glm::vec3(0));
-        if (const auto mean = mean_of(from_.emissiveTexture.index, true)) {
-            material_.emissive *= glm::vec3(*mean);
-            ++loader_.ignored["{} emissive texture{|s} replaced by {its|their} mean"];
-        }
+        material_.emissive_texture = use(TextureInfo::of(from_.emissiveTexture));
     }
 
     void read_transmission() {
         const tinygltf::Value& transmission = extension(from_.extensions, "KHR_materials_transmission");
         const tinygltf::Value& volume = extension(from_.extensions, "KHR_materials_volume");
         material_.transmission = unit(number(transmission, "transmissionFactor", 0));
-        if (const auto mean = mean_of(texture_index(transmission, "transmissionTexture"), false)) {
-            material_.transmission *= mean->x;
-            ++loader_.ignored["{} transmission texture{|s} replaced by {its|their} mean"];
-        }
+        material_.transmission_texture = use(TextureInfo::of(transmission, "transmissionTexture"));
         material_.thickness = std::max(0.f, static_cast<float>(number(volume, "thicknessFactor", 0)));
-        ignore(texture_index(volume, "thicknessTexture"), "{} thickness texture{|s} ignored");
+        material_.thickness_texture = use(TextureInfo::of(volume, "thicknessTexture"), 1);
         material_.attenuation_color = glm::clamp(vector(volume, "attenuationColor", glm::vec3(1)), 0.f, 1.f);
         if (volume.Has("attenuationDistance")) {
             const double distance = number(volume, "attenuationDistance", 0);
@@ -140,33 +151,8 @@ class MaterialReader {
         const tinygltf::Value& specular = extension(from_.extensions, "KHR_materials_specular");
         material_.specular = unit(number(specular, "specularFactor", 1));
         material_.specular_color = glm::max(vector(specular, "specularColorFactor", glm::vec3(1)), glm::vec3(0));
-        if (const auto mean = mean_of(texture_index(specular, "specularTexture"), false)) {
-            material_.specular *= mean->w;
-            ++loader_.ignored["{} specular texture{|s} replaced by {its|their} mean"];
-        }
-        if (const auto mean = mean_of(texture_index(specular, "specularColorTexture"), true)) {
-            material_.specular_color *= glm::vec3(*mean);
-            ++loader_.ignored["{} specular colour texture{|s} replaced by {its|their} mean"];
-        }
-    }
-
-    void read_base_color(const tinygltf::TextureInfo& info) {
-        const tinygltf::Value& transform = extension(info.extensions, "KHR_texture_transform");
-        uv_.set = static_cast<uint32_t>(number(transform, "texCoord", info.texCoord));
-        uv_.offset = vector(transform, "offset", uv_.offset);
-        uv_.scale = vector(transform, "scale", uv_.scale);
-        uv_.rotation = static_cast<float>(number(transform, "rotation", 0));
-        const std::optional<int> image = image_if_there(info.index, true);
-        if (image) material_.base_color_texture = texture_id(*image, info.index);
-        uv_.used = material_.base_color_texture >= 0;
-    }
-
-    /// A texture without effect: noted, and its image looked at, since a broken one should not pass unnoticed.
-    void ignore(int texture, const char* sentence) {
-        if (texture < 0) return;
-        ++loader_.ignored[sentence];
-        const auto image = image_if_there(texture, false);
-        if (image) unless_damaged(*image, [&] { check_image(loader_.file.image_bytes(*image), where(*image)); });
+        material_.specular_texture = use(TextureInfo::of(specular, "specularTexture"), 3);
+        material_.specular_color_texture = use(TextureInfo::of(specular, "specularColorTexture"));
     }
 
     /// Does `read`, unless the image is damaged, or it shows that it is: that is noted, and false.
@@ -180,6 +166,34 @@ class MaterialReader {
             loader_.damaged_images.emplace(image, error.text());
             return false;
         }
+    }
+
+    /// A texture and where its coordinates come from; none where its image cannot be had. `channel`: of a single
+    /// number.
+    MaterialTexture use(const TextureInfo& info, uint32_t channel = 0, bool is_base_color = false) {
+        if (info.index < 0) return {};
+        const std::optional<int> image = image_if_there(info.index, is_base_color);
+        if (!image) return {};
+        MaterialTexture out(texture_id(*image, info.index));
+        if (!out) return out;
+        out.channel = channel;
+        static const tinygltf::Value none;
+        const tinygltf::Value& transform = info.transform ? *info.transform : none;
+        out.uv_set = uv_set(static_cast<uint32_t>(number(transform, "texCoord", info.set)));
+        const glm::vec2 scale = vector(transform, "scale", glm::vec2(1));
+        const auto rotation = static_cast<float>(number(transform, "rotation", 0));
+        const float c = std::cos(rotation), s = std::sin(rotation);
+        out.uv_matrix = glm::mat2(c * scale.x, -s * scale.x, s * scale.y, c * scale.y);
+        out.uv_offset = vector(transform, "offset", glm::vec2(0));
+        return out;
+    }
+
+    /// The primitives' set of texture coordinates that TEXCOORD_`set` becomes.
+    uint32_t uv_set(uint32_t set) {
+        const auto found = std::find(uv_sets_.begin(), uv_sets_.end(), set);
+        const auto index = static_cast<uint32_t>(found - uv_sets_.begin());
+        if (found == uv_sets_.end()) uv_sets_.push_back(set);
+        return index;
     }
 
     /// The image that a texture shows; none (with a note) where only an extension's format is offered.
@@ -233,8 +247,9 @@ class MaterialReader {
         if (added) {
             const std::string& name = model_.images[static_cast<size_t>(image)].name;
             Texture decoded;
-            if (!unless_damaged(image,
-                                [&] { decoded = decode_image(loader_.file.image_bytes(image), where(image)); })) {
+            if (!unless_damaged(image, [&] {
+                    decoded = decode_image(loader_.file.image_bytes(image), where(image), Depth::as_stored);
+                })) {
                 entry->second = -1;
                 return -1;
             }
@@ -254,21 +269,12 @@ class MaterialReader {
         return name.empty() ? place : fmt::format("{} ({})", place, printable(name, 80));
     }
 
-    std::optional<glm::vec4> mean_of(int texture, bool srgb) {
-        const std::optional<int> image = texture < 0 ? std::nullopt : image_if_there(texture, false);
-        if (!image) return std::nullopt;
-        std::optional<glm::vec4> mean;
-        unless_damaged(*image,
-                       [&] { mean = mean_texel(decode_image(loader_.file.image_bytes(*image), where(*image)), srgb); });
-        return mean;
-    }
-
     GltfLoader& loader_;
     const tinygltf::Model& model_;
     const tinygltf::Material& from_;
     const size_t index_;
     Material material_;
-    UvSource uv_;
+    std::vector<uint32_t> uv_sets_;  ///< the TEXCOORD_ of its textures, by first use
 };
 
 }  // namespace
@@ -280,7 +286,7 @@ uint32_t GltfLoader::unlit(uint32_t material) {
         Material same = scene.materials[material];
         same.unlit = true;
         scene.materials.push_back(std::move(same));
-        uv_sources.push_back(UvSource(uv_sources[material]));
+        uv_sets.push_back(std::vector<uint32_t>(uv_sets[material]));
     }
     return copy->second;
 }
@@ -292,7 +298,7 @@ void GltfLoader::read_materials() {
     fallback.metallic = 1;  // the format's defaults
     fallback.double_sided = false;
     scene.materials.push_back(std::move(fallback));
-    uv_sources.emplace_back();
+    uv_sets.emplace_back();
 }
 
 }  // namespace peelray

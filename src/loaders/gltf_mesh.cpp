@@ -6,6 +6,7 @@
 #include "loaders/gltf_draco.h"
 #include "scene/normals.h"
 #include "scene/thicken.h"
+#include "scene/transform.h"
 
 namespace peelray {
 
@@ -190,6 +191,7 @@ class PrimitiveReader {
             check_count("NORMAL", out.normals.size(), out);
         }
         read_uvs(out);
+        read_tangents(out);
         read_colors(out);
         read_joints(out);
         read_targets(out);
@@ -205,27 +207,55 @@ class PrimitiveReader {
             loader_.ignored["{} normal{|s} without direction replaced"] += repaired;
     }
 
+    /// The sets that the material's textures use, in its order; without textures the first.
     void read_uvs(Primitive& out) {
-        const UvSource& source = loader_.uv_sources[out.material];
-        const std::string name = fmt::format("TEXCOORD_{}", source.used ? source.set : 0);
-        if (!has(name.c_str())) {
-            if (source.used)
-                ++loader_.ignored
-                      ["{} primitive{|s} without the texture coordinates of {its|their} base colour texture "
-                       "{shows|show} its corner "
-                       "(MESH_PRIMITIVE_TOO_FEW_TEXCOORDS)"];
-            return;
+        const std::vector<uint32_t>& used = loader_.uv_sets[out.material];
+        if (used.empty()) out.uvs = read_uv_set(0, out);
+        bool missing = false;
+        for (size_t i = 0; i < used.size(); ++i) {
+            std::vector<glm::vec2> set = read_uv_set(used[i], out);
+            missing |= set.empty();
+            if (i == 0)
+                out.uvs = std::move(set);
+            else
+                out.more_uvs.push_back(std::move(set));
         }
-        out.uvs = vectors<glm::vec2>(name.c_str());
-        check_count(name.c_str(), out.uvs.size(), out);
-        const float c = std::cos(source.rotation), s = std::sin(source.rotation);
-        for (glm::vec2& uv : out.uvs) {
+        if (missing)
+            ++loader_.ignored
+                  ["{} primitive{|s} without the texture coordinates that {its|their} material's textures use "
+                   "(MESH_PRIMITIVE_TOO_FEW_TEXCOORDS): all of each shows one texel"];
+    }
+
+    /// TEXCOORD_`set`; empty where there is none.
+    std::vector<glm::vec2> read_uv_set(uint32_t set, const Primitive& out) {
+        const std::string name = fmt::format("TEXCOORD_{}", set);
+        if (!has(name.c_str())) return {};
+        std::vector<glm::vec2> uvs = vectors<glm::vec2>(name.c_str());
+        check_count(name.c_str(), uvs.size(), out);
+        for (glm::vec2& uv : uvs)
             if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
                 uv = glm::vec2(0);
                 ++loader_.ignored["{} texture coordinates that are not finite count as 0 (ACCESSOR_INVALID_FLOAT)"];
             }
-            const glm::vec2 scaled = uv * source.scale;
-            uv = glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + source.offset;
+        return uvs;
+    }
+
+    /// Where the material has a normal texture, and all are right: else they are made. They belong to the file's
+    /// normals.
+    void read_tangents(Primitive& out) {
+        if (!loader_.scene.materials[out.material].normal_texture || out.normals.empty() || !has("TANGENT")) return;
+        out.tangents = vectors<glm::vec4>("TANGENT");
+        check_count("TANGENT", out.tangents.size(), out);
+        for (glm::vec4& tangent : out.tangents) {
+            const glm::vec3 unit = unit_or(glm::dvec3(tangent), glm::vec3(0));
+            if (unit == glm::vec3(0) || std::abs(tangent.w) != 1) {
+                ++loader_.ignored
+                      ["{} primitive{|s} whose tangents have no direction or no side (ACCESSOR_INVALID_SIGN), made "
+                       "anew"];
+                out.tangents.clear();
+                return;
+            }
+            tangent = glm::vec4(unit, tangent.w);
         }
     }
 
@@ -309,12 +339,14 @@ class PrimitiveReader {
         for (size_t i = 0; i < from_.targets.size(); ++i) {
             MorphTarget target;
             for (const auto& [name, accessor] : from_.targets[i]) {
-                if (name != "POSITION" && name != "NORMAL") continue;
+                if (name != "POSITION" && name != "NORMAL" && (name != "TANGENT" || out.tangents.empty())) continue;
                 if (!has(name.c_str()))
                     ++loader_.ignored
                           ["{} morph target{|s} of normals that the mesh does not have "
                            "(MESH_PRIMITIVE_MORPH_TARGET_NO_BASE_ACCESSOR)"];
-                std::vector<glm::vec3>& values = name == "POSITION" ? target.positions : target.normals;
+                std::vector<glm::vec3>& values = name == "POSITION" ? target.positions
+                                                 : name == "NORMAL" ? target.normals
+                                                                    : target.tangents;
                 values = vectors_of<glm::vec3>(accessor, name.c_str());
                 check_count(fmt::format("targets[{}].{}", i, name).c_str(), values.size(), out);
                 for (glm::vec3& v : values)

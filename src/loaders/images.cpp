@@ -1,8 +1,6 @@
 #include "loaders/images.h"
 
-#include <array>
 #include <climits>
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <string_view>
@@ -58,12 +56,15 @@ void check_image(std::span<const uint8_t> bytes, const std::string& where) {
              STBI_MAX_DIMENSIONS);
 }
 
-Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
+Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, Depth depth) {
     if (is_webp(bytes)) return decode_webp(bytes, where);
     check_image(bytes, where);
     int width = 0, height = 0, channels = 0;
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-        stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
+    const int size = static_cast<int>(bytes.size());
+    const bool deep = depth == Depth::as_stored && stbi_is_16_bit_from_memory(bytes.data(), size);
+    const std::unique_ptr<void, decltype(&stbi_image_free)> pixels(
+        deep ? static_cast<void*>(stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, 4))
+             : static_cast<void*>(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4)),
         &stbi_image_free);
     if (!pixels) fail_image(where, bytes.size());
     if (is_truncated_jpeg(bytes))
@@ -71,8 +72,11 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where) {
     Texture texture;
     texture.width = static_cast<uint32_t>(width);
     texture.height = static_cast<uint32_t>(height);
-    texture.texels.resize(size_t(texture.width) * texture.height);
-    std::memcpy(texture.texels.data(), pixels.get(), texture.texels.size() * 4);
+    const auto take = [&](auto& texels) {
+        texels.resize(size_t(texture.width) * texture.height);
+        std::memcpy(texels.data(), pixels.get(), texels.size() * sizeof texels[0]);
+    };
+    deep ? take(texture.deep_texels) : take(texture.texels);
     return texture;
 }
 
@@ -88,18 +92,6 @@ const char* foreign_image_type(std::span<const uint8_t> bytes) {
     if (text.starts_with("\x76\x2f\x31\x01")) return "OpenEXR";
     if (text.starts_with("#?")) return "Radiance";
     return text.starts_with("<svg") || text.starts_with("<?xml") ? "SVG" : nullptr;
-}
-
-glm::vec4 mean_texel(const Texture& texture, bool srgb) {
-    std::array<double, 256> decoded;
-    for (int i = 0; i < 256; ++i) {
-        const double c = i / 255.0;
-        decoded[i] = !srgb ? c : c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-    }
-    glm::dvec4 sum{0};
-    for (const uint32_t t : texture.texels)
-        sum += glm::dvec4(decoded[t & 255], decoded[t >> 8 & 255], decoded[t >> 16 & 255], (t >> 24) / 255.0);
-    return glm::vec4(sum / std::max(1.0, double(texture.texels.size())));
 }
 
 }  // namespace peelray

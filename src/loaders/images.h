@@ -1,7 +1,6 @@
-// Decodes PNG, JPEG, WebP, BMP, TGA, GIF images to 8-bit RGBA.
+// Decodes PNG, JPEG, WebP, BMP, TGA, GIF images to RGBA.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <span>
 #include <string>
 
@@ -9,9 +8,14 @@
 
 namespace peelray {
 
-/// Fills size and texels; 16-bit images are reduced to 8 bits. Throws Error, prefixed with `where`, for bytes that are
-/// not such an image, for a truncated one, and for a side of more than 16384 pixels.
-Texture decode_image(std::span<const uint8_t> bytes, const std::string& where);
+enum class Depth : uint8_t {
+    eight,      ///< images of 16 bits a channel are reduced
+    as_stored,  ///< those give Texture::deep_texels
+};
+
+/// Fills size and texels. Throws Error, prefixed with `where`, for bytes that are not such an image, for a truncated
+/// one, and for a side of more than 16384 pixels.
+Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, Depth depth = Depth::eight);
 
 /// Checks that the bytes begin like an image that decode_image reads, without decoding the pixels.
 void check_image(std::span<const uint8_t> bytes, const std::string& where);
@@ -19,8 +23,5 @@ void check_image(std::span<const uint8_t> bytes, const std::string& where);
 /// The type of an image that decode_image does not read, such as "KTX2" or "AVIF", by its first bytes; nullptr: none
 /// that is known.
 const char* foreign_image_type(std::span<const uint8_t> bytes);
-
-/// The mean of all texels, channels in [0, 1] as stored (`linear`) or with red, green, blue decoded from sRGB.
-glm::vec4 mean_texel(const Texture& texture, bool srgb);
 
 }  // namespace peelray

@@ -16,6 +16,7 @@
 #include "loaders/off.h"
 #include "loaders/ply.h"
 #include "loaders/stl.h"
+#include "scene/tangents.h"
 
 namespace peelray {
 
@@ -61,6 +62,7 @@ Scene load_scene(const std::string& name, const LoadOptions& options) {
     try {
         Scene scene = load_file(path, options);
         refuse_variant(scene);
+        complete_tangents(scene);
         if (!has_triangles(scene)) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
         return scene;
     } catch (const std::bad_alloc&) {

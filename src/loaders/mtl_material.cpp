@@ -72,6 +72,14 @@ Texture with_alpha(const Texture& color, const Texture& opacity, char channel) {
     return out;
 }
 
+/// The texture as a statement's options place it. They count v from the image's last row, we from its first.
+MaterialTexture placed(int texture, const MtlTexture& map) {
+    MaterialTexture out(texture);
+    out.uv_matrix = glm::mat2(map.scale.x, 0, 0, map.scale.y);
+    out.uv_offset = {map.offset.x, 1 - map.scale.y - map.offset.y};
+    return out;
+}
+
 }  // namespace
 
 /// The name as written, or what stands before a comment; nothing (noted once): it cannot be had.
@@ -98,11 +106,11 @@ std::optional<std::filesystem::path> MtlConverter::find_image(const MtlTexture& 
     return std::nullopt;
 }
 
-std::optional<Texture> MtlConverter::image(const MtlTexture& map) {
+std::optional<Texture> MtlConverter::image(const MtlTexture& map, Depth depth) {
     const std::optional<std::filesystem::path> path = find_image(map);
     if (!path) return std::nullopt;
     try {
-        Texture texture = decode_image(read_file(*path), fmt::format("texture \"{}\"", printable(map.name, 80)));
+        Texture texture = decode_image(read_file(*path), fmt::format("texture \"{}\"", printable(map.name, 80)), depth);
         remember_file(scene_.files, *path);
         texture.name = name_without_comment(map.name);
         std::replace(texture.name.begin(), texture.name.end(), '\\', '/');
@@ -114,14 +122,6 @@ std::optional<Texture> MtlConverter::image(const MtlTexture& map) {
     }
 }
 
-std::optional<glm::vec4> MtlConverter::mean(const std::optional<MtlTexture>& map, bool srgb) {
-    if (!map) return std::nullopt;
-    const auto [entry, added] = means_.try_emplace(map->name + (srgb ? " sRGB" : " linear"));
-    if (added)
-        if (const std::optional<Texture> texture = image(*map)) entry->second = mean_texel(*texture, srgb);
-    return entry->second;
-}
-
 int MtlConverter::add_texture(const std::string& key, Texture texture, const MtlTexture& map) {
     if (map.is_clamped) texture.wrap_u = texture.wrap_v = Texture::Wrap::clamp;
     const int id = static_cast<int>(scene_.textures.size());
@@ -130,8 +130,25 @@ int MtlConverter::add_texture(const std::string& key, Texture texture, const Mtl
     return id;
 }
 
+/// A texture of its own for a material's property, which the statement's options place; none where there is no image.
+MaterialTexture MtlConverter::use(const std::optional<MtlTexture>& map, Depth depth) {
+    if (!map) return {};
+    std::string key = fmt::format("{}|{}", map->name, map->is_clamped);
+    if (depth == Depth::as_stored) key += "|deep";
+    auto known = textures_.find(key);
+    if (known == textures_.end()) {
+        std::optional<Texture> texture = image(*map, depth);
+        if (!texture) return {};
+        add_texture(key, std::move(*texture), *map);
+        known = textures_.find(key);
+    }
+    MaterialTexture out = placed(known->second, *map);
+    out.channel = map->channel == 'g' ? 1 : map->channel == 'b' ? 2 : map->channel == 'm' ? 3 : 0;
+    return out;
+}
+
 void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
-    out.base_color = from.diffuse.value_or(out.base_color_texture >= 0 ? glm::vec3(1) : default_color);
+    out.base_color = from.diffuse.value_or(out.base_color_texture ? glm::vec3(1) : default_color);
     const glm::vec3 specular = from.specular.value_or(glm::vec3(0));
     if (largest_channel(out.base_color) > 1 || largest_channel(specular) > 1)
         ++tally["{} material{|s} with colours above 1 cut to that"];
@@ -147,20 +164,12 @@ void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
     }
     if (from.metallic) out.metallic = clamped(*from.metallic);
     if (from.roughness) out.roughness = clamped(*from.roughness);
-    if (const auto m = mean(from.metallic_map, false)) {
-        out.metallic = clamped(from.metallic.value_or(1.f)) * m->x;
-        ++tally["{} metalness texture{|s} (map_Pm) replaced by {its|their} mean"];
-    }
-    if (const auto m = mean(from.roughness_map, false)) {
-        out.roughness = clamped(from.roughness.value_or(1.f)) * m->x;
-        ++tally["{} roughness texture{|s} (map_Pr) replaced by {its|their} mean"];
-    }
-    out.emissive = from.emissive.value_or(glm::vec3(from.emissive_map ? 1.f : 0.f));
-    if (from.emissive_map) {
-        const auto m = mean(from.emissive_map, true);
-        if (m) ++tally["{} emissive texture{|s} (map_Ke) replaced by {its|their} mean"];
-        out.emissive *= m ? glm::vec3(*m) : glm::vec3(from.emissive ? 1.f : 0.f);
-    }
+    // A factor beside a texture scales it; without one the texture counts as it is.
+    if ((out.metallic_texture = use(from.metallic_map))) out.metallic = clamped(from.metallic.value_or(1.f));
+    if ((out.roughness_texture = use(from.roughness_map))) out.roughness = clamped(from.roughness.value_or(1.f));
+    out.emissive_texture = use(from.emissive_map);
+    out.emissive = from.emissive.value_or(glm::vec3(out.emissive_texture ? 1.f : 0.f));
+    if ((out.normal_texture = use(from.normal_map, Depth::as_stored))) out.normal_scale = from.normal_map->strength;
     if (from.illum == 0) ++tally["{} material{|s} of constant colour (illum 0) lit as others"];
     if (from.illum == 10) ++tally["{} material{|s} that {shows|show} shadows only (illum 10) drawn as others"];
 }
@@ -179,7 +188,7 @@ void MtlConverter::read_transmission(const MtlMaterial& from, float opacity, Mat
         ++tally["{} black transmission filter{|s} (Tf) ignored"];
         filter = glm::vec3(1);
     }
-    const glm::vec3 own = from.diffuse.value_or(out.base_color_texture >= 0 ? glm::vec3(1) : default_color);
+    const glm::vec3 own = from.diffuse.value_or(out.base_color_texture ? glm::vec3(1) : default_color);
     const float through = opacity < 1 ? 1 - opacity : 1;
     if (opacity >= 1 && from.diffuse && largest_channel(own) > 0)
         ++tally["{} glass{|es} (illum 4, 6, 7 or 9 without d) whose colour Kd is ignored; Tf tints {it|them}"];
@@ -188,31 +197,30 @@ void MtlConverter::read_transmission(const MtlMaterial& from, float opacity, Mat
     out.ior = from.ior.value_or(1.f) > 1 ? std::min(*from.ior, 10.f) : 1.5f;
     out.thickness = from.illum == 6 || from.illum == 7 ? 1.f : 0.f;
     out.metallic = 0;
+    out.metallic_texture = {};
     // One colour tints both shares: this one makes their sum right under even light, and each where the other is none.
     out.base_color = glm::min(own, glm::vec3(1)) * (1 - through) + filter * through;
     // A clear body that says nothing of highlights is polished: glass is not frosted unless asked for.
     if (!from.roughness && !from.roughness_map) out.roughness = 0;
 }
 
-void MtlConverter::read_color_map(const MtlMaterial& from, Material& out, UvTransform& transform) {
+void MtlConverter::read_color_map(const MtlMaterial& from, Material& out) {
     if (!from.diffuse_map) return;
     const MtlTexture& map = *from.diffuse_map;
     const std::string key = fmt::format("{}|{}", map.name, map.is_clamped);
     const auto known = textures_.find(key);
     if (known != textures_.end()) {
-        out.base_color_texture = known->second;
+        out.base_color_texture = placed(known->second, map);
     } else if (std::optional<Texture> texture = image(map)) {
         if (!from.dissolve_map && !is_opaque(*texture))
             ++tally["{} colour texture{|s} whose alpha is ignored; name the image after map_d, too"];
-        out.base_color_texture = add_texture(key, std::move(*texture), map);
+        out.base_color_texture = placed(add_texture(key, std::move(*texture), map), map);
     }
-    if (out.base_color_texture < 0) return;
-    if (map.channel) ++tally["{} texture option{|s} \"-imfchan\" of colours without effect"];
-    transform = {map.scale, map.offset};
+    if (out.base_color_texture && map.channel) ++tally["{} texture option{|s} \"-imfchan\" of colours without effect"];
 }
 
 /// Holes where the map is below one half; the mean of a map that never crosses it, which dissolves the surface evenly.
-float MtlConverter::read_dissolve_map(const MtlMaterial& from, Material& out, UvTransform& transform) {
+float MtlConverter::read_dissolve_map(const MtlMaterial& from, Material& out) {
     if (!from.dissolve_map) return 1;
     const MtlTexture& map = *from.dissolve_map;
     const std::optional<Texture> opacity = image(map);
@@ -230,19 +238,18 @@ float MtlConverter::read_dissolve_map(const MtlMaterial& from, Material& out, Uv
         return mean;
     }
     ++tally["{} dissolve texture{|s} (map_d) {cuts|cut} holes where {it is|they are} below one half"];
-    const bool is_textured = out.base_color_texture >= 0;
-    if (is_textured && (transform.scale != map.scale || transform.offset != map.offset))
-        ++tally["{} texture option{|s} \"-s\" and \"-o\" of map_d that {differs|differ} from those of map_Kd ignored"];
-    if (!is_textured) transform = {map.scale, map.offset};
+    const bool is_textured(out.base_color_texture);
     const MtlTexture& shape = is_textured ? *from.diffuse_map : map;
+    if (shape.scale != map.scale || shape.offset != map.offset)
+        ++tally["{} texture option{|s} \"-s\" and \"-o\" of map_d that {differs|differ} from those of map_Kd ignored"];
     const std::string key =
         fmt::format("{}|{}|{}|{}", is_textured ? from.diffuse_map->name : "", map.name, channel, shape.is_clamped);
     const auto known = textures_.find(key);
     if (known != textures_.end()) {
-        out.base_color_texture = known->second;
+        out.base_color_texture = placed(known->second, shape);
     } else {
-        const Texture color = is_textured ? scene_.textures[size_t(out.base_color_texture)] : Texture{map.name};
-        out.base_color_texture = add_texture(key, with_alpha(color, *opacity, channel), shape);
+        const Texture color = is_textured ? scene_.textures[size_t(out.base_color_texture.texture)] : Texture{map.name};
+        out.base_color_texture = placed(add_texture(key, with_alpha(color, *opacity, channel), shape), shape);
     }
     out.alpha_cutoff = 0.5f;
     return 1;
@@ -251,15 +258,13 @@ float MtlConverter::read_dissolve_map(const MtlMaterial& from, Material& out, Uv
 void MtlConverter::add(const MtlMaterial& from) {
     Material out;
     out.name = from.name;
-    UvTransform transform;
-    read_color_map(from, out, transform);
+    read_color_map(from, out);
     read_surface(from, out);
     const float opacity = clamped(from.dissolve.value_or(1 - from.transparency.value_or(0.f)));
     if (from.dissolve && from.transparency && std::abs(opacity - (1 - *from.transparency)) > 0.01f)
         ++tally["{} material{|s} whose d and Tr disagree: d counts"];
-    read_transmission(from, opacity * read_dissolve_map(from, out, transform), out);
+    read_transmission(from, opacity * read_dissolve_map(from, out), out);
     scene_.materials.push_back(std::move(out));
-    uv_transforms_.push_back(transform);
 }
 
 void MtlConverter::write_notes() {

@@ -13,7 +13,7 @@ namespace peelray {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> bump_maps = {"bump", "map_bump", "norm", "map_kn", "map_norm"};
+constexpr std::array<std::string_view, 3> normal_maps = {"norm", "map_kn", "map_norm"};
 
 class MtlReader {
   public:
@@ -70,8 +70,10 @@ class MtlReader {
         if (lower == "map_d") return map(rest, m.dissolve_map);
         if (lower == "map_pr") return map(rest, m.roughness_map);
         if (lower == "map_pm") return map(rest, m.metallic_map);
-        if (std::find(bump_maps.begin(), bump_maps.end(), lower) != bump_maps.end())
-            ++tally_["{} normal and bump map{|s} ignored"];
+        if (std::find(normal_maps.begin(), normal_maps.end(), lower) != normal_maps.end())
+            return map(rest, m.normal_map, true);
+        if (lower == "bump" || lower == "map_bump")
+            ++tally_["{} bump map{|s} (map_bump), which {holds|hold} heights, ignored; normal maps (norm) are read"];
         else
             ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect",
                                  escaped(printable(key, 20)))];
@@ -120,8 +122,8 @@ class MtlReader {
         return true;
     }
 
-    bool map(std::string_view rest, std::optional<MtlTexture>& out) {
-        MtlTexture texture = parse_mtl_texture(rest, tally_);
+    bool map(std::string_view rest, std::optional<MtlTexture>& out, bool is_normal = false) {
+        MtlTexture texture = parse_mtl_texture(rest, tally_, is_normal);
         if (texture.name.empty()) return false;
         out = std::move(texture);
         return true;
@@ -160,7 +162,8 @@ const Option* find_option(std::string_view word) {
 
 class TextureOptions {
   public:
-    TextureOptions(MtlTexture& out, MtlTally& tally) : out_(out), tally_(tally) {}
+    TextureOptions(MtlTexture& out, MtlTally& tally, bool is_normal)
+        : out_(out), tally_(tally), is_normal_(is_normal) {}
 
     /// Takes an option with its values off the front; false: no option stands there.
     bool take(std::string_view& rest) {
@@ -198,6 +201,8 @@ class TextureOptions {
             out_.scale = {values[0], values[1]};
         } else if (name == "-o" && count) {
             out_.offset = {values[0], values[1]};
+        } else if (name == "-bm" && count && is_normal_) {
+            out_.strength = values[0];
         } else if (name == "-mm" && count == 2 && values[0] == 0 && values[1] == 1) {
             return;  // as it is
         } else {
@@ -221,6 +226,7 @@ class TextureOptions {
 
     MtlTexture& out_;
     MtlTally& tally_;
+    bool is_normal_;
     bool needs_name_ = true;
 };
 
@@ -230,9 +236,9 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& nam
     return MtlReader(text, name, tally).read();
 }
 
-MtlTexture parse_mtl_texture(std::string_view rest, MtlTally& tally) {
+MtlTexture parse_mtl_texture(std::string_view rest, MtlTally& tally, bool is_normal) {
     MtlTexture out;
-    TextureOptions reader(out, tally);
+    TextureOptions reader(out, tally, is_normal);
     while (reader.take(rest)) {
     }
     rest = trimmed(rest);

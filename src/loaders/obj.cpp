@@ -138,7 +138,7 @@ class MaterialNames {
 };
 
 /// Makes the scene's materials, the default one first, and gives the mesh's parts their numbers.
-std::vector<MtlConverter::UvTransform> add_materials(ObjFile& file, const std::filesystem::path& folder, Scene& scene) {
+void add_materials(ObjFile& file, const std::filesystem::path& folder, Scene& scene) {
     MtlConverter converter(folder, scene);
     MaterialLibraries libraries(folder, scene);
     for (const std::string& names : file.libraries) libraries.read(names, converter.tally);
@@ -170,7 +170,6 @@ std::vector<MtlConverter::UvTransform> add_materials(ObjFile& file, const std::f
                                           counted("{} material{|s} that no library defines {is|are}", unknown.size()),
                                           printable(unknown[0], 80)));
     converter.write_notes();
-    return converter.uv_transforms();
 }
 
 }  // namespace
@@ -187,19 +186,9 @@ Scene load_obj(const std::filesystem::path& path) {
         if (const auto middle = far_middle(file.mesh)) file = parse_obj(as_text(bytes), scene.name, *middle);
     }
     scene.notes = std::move(file.notes);
-    const std::vector<MtlConverter::UvTransform> transforms = add_materials(file, path.parent_path(), scene);
+    add_materials(file, path.parent_path(), scene);
     add_polygon_mesh(std::move(file.mesh), scene);
     settle_origin(scene);
-    for (Mesh& mesh : scene.meshes)
-        for (Primitive& primitive : mesh.primitives) {
-            const auto& [scale, offset] = transforms[primitive.material];
-            if (scale == glm::vec2(1) && offset == glm::vec2(0)) continue;
-            for (glm::vec2& uv : primitive.uvs) {
-                const glm::vec2 from_below(uv.x, 1 - uv.y);
-                const glm::vec2 moved = from_below * scale + offset;
-                uv = {moved.x, 1 - moved.y};
-            }
-        }
     return scene;
 }
 

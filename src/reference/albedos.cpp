@@ -31,24 +31,52 @@ Albedos::Means integrate(const Optics& m, double cosine) {
     return sum;
 }
 
+Albedos::Means mixed(const Albedos::Means& a, const Albedos::Means& b, double part) {
+    return {glm::mix(a.dielectric, b.dielectric, part), glm::mix(a.normal, b.normal, part),
+            glm::mix(a.grazing, b.grazing, part)};
+}
+
 }  // namespace
 
-Albedos::Albedos(size_t materials, const Surfaces& surfaces)
-    : surfaces_(surfaces), tables_(std::make_unique<Table[]>(materials)) {}
+Albedos::Albedos(const Scene& scene, const Surfaces& surfaces) : surfaces_(surfaces), first_table_{0} {
+    for (const Material& m : scene.materials)
+        first_table_.push_back(first_table_.back() + (m.roughness_texture ? roughnesses : 1));
+    tables_ = std::make_unique<Table[]>(first_table_.back());
+}
 
-Albedos::Means Albedos::at(uint32_t material, double cosine) const {
-    Table& table = tables_[material];
+Albedos::Means Albedos::look_up(const Optics& constants, size_t number, double roughness, double cosine) const {
+    Table& table = tables_[number];
     std::call_once(table.made, [&] {
+        Optics m = constants;
+        m.roughness = roughness;
         for (size_t i = 0; i <= steps; i++)
-            table.entries[i] =
-                integrate(surfaces_.optics(material), std::max(GRAZING_COSINE, std::pow(double(i) / steps, 2)));
+            table.entries[i] = integrate(m, std::max(GRAZING_COSINE, std::pow(double(i) / steps, 2)));
     });
     const double place = std::sqrt(std::clamp(cosine, 0.0, 1.0)) * steps;
     const size_t lower = std::min(size_t(place), steps - 1);
-    const Means &a = table.entries[lower], &b = table.entries[lower + 1];
-    const double part = place - double(lower);
-    return {glm::mix(a.dielectric, b.dielectric, part), glm::mix(a.normal, b.normal, part),
-            glm::mix(a.grazing, b.grazing, part)};
+    return mixed(table.entries[lower], table.entries[lower + 1], place - double(lower));
+}
+
+Albedos::Means Albedos::at(const Surface& surface, double cosine) const {
+    const Optics &constants = surfaces_.optics(surface.material), &here = surface.optics;
+    const size_t first = first_table_[surface.material];
+    Means means;
+    if (first_table_[surface.material + 1] == first + 1) {
+        means = look_up(constants, first, constants.roughness, cosine);
+    } else {
+        constexpr double last = roughnesses - 1;
+        const double place = std::sqrt(std::clamp(here.roughness, 0.0, 1.0)) * last;
+        const size_t lower = std::min(size_t(place), roughnesses - 2);
+        // A mirror's lobe has no width to integrate over.
+        const auto table = [&](size_t i) {
+            const double roughness = std::max(std::pow(double(i) / last, 2), 0.5 * MIRROR_ROUGHNESS);
+            return look_up(constants, first + i, roughness, cosine);
+        };
+        means = mixed(table(lower), table(lower + 1), place - double(lower));
+    }
+    // Schlick's is linear in both reflectances, which textures change.
+    if (here.specified) means.dielectric = here.f0 * means.normal + here.f90 * means.grazing;
+    return means;
 }
 
 }  // namespace peelray

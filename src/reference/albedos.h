@@ -19,10 +19,10 @@ class Albedos {
         glm::dvec3 metal(const glm::dvec3& base_color) const { return base_color * normal + grazing; }
     };
 
-    Albedos(size_t materials, const Surfaces& surfaces);
+    Albedos(const Scene& scene, const Surfaces& surfaces);
 
     /// `cosine`: between the view and the surface's normal.
-    Means at(uint32_t material, double cosine) const;
+    Means at(const Surface& surface, double cosine) const;
 
   private:
     static constexpr size_t steps = 64;  ///< in the square root of the cosine
@@ -31,7 +31,13 @@ class Albedos {
         std::array<Means, steps + 1> entries;
     };
 
+    /// Materials whose roughness a texture changes have a table for each of these, in the square root of the roughness;
+    /// the others one, for their own.
+    static constexpr size_t roughnesses = 65;
+    Means look_up(const Optics& constants, size_t table, double roughness, double cosine) const;
+
     const Surfaces& surfaces_;
+    std::vector<size_t> first_table_;  ///< per material, and the end
     std::unique_ptr<Table[]> tables_;
 };
 

@@ -67,7 +67,7 @@ MediaWalk::Together MediaWalk::walls_at(const OracleRay& ray, const Wall& neares
         const uint32_t material = wall.surface.material;
         if (std::abs(glm::dot(wall.surface.geometric, nearest.surface.geometric)) < WALLS_PARALLEL) break;
         if (!bounds_medium(hit.triangle)) {
-            if (!surfaces_.optics(material).transmits()) together.opaque = hit;
+            if (!wall.surface.optics.transmits()) together.opaque = hit;
             break;
         }
         const auto same = [&](bool front) {
@@ -109,7 +109,7 @@ size_t MediaWalk::meet(const std::vector<Wall>& walls, Meeting& meeting) const {
         // The wall of a body within another one of the same medium has no colour.
         const bool inner = assumed.holds(material) && behind.holds(material);
         if (!inner && (i != owner || meeting.from == meeting.to))
-            meeting.beside *= tint_of(walls[i].surface, surfaces_.optics(material));
+            meeting.beside *= tint_of(walls[i].surface, walls[i].surface.optics);
     }
     meeting.behind = std::move(behind);
     return owner;

@@ -82,7 +82,7 @@ struct PathTracer::Impl {
         : geometry(geometry),
           bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)),
           surfaces(scene, geometry),
-          albedos(scene.materials.size(), surfaces),
+          albedos(scene, surfaces),
           surroundings(environment),
           lights(moment.lights),
           media(media_ranks(scene)),

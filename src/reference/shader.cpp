@@ -73,14 +73,14 @@ double Shader::index_of(uint32_t medium) const {
 }
 
 double Shader::relative_index(const Meeting& meeting, const Surface& s) const {
-    const Optics& m = context_.surfaces.optics(s.material);
+    const Optics& m = s.optics;
     if (!meeting.wall) return m.leaves(s.front) ? 1 / m.ior : m.ior;
     return index_of(meeting.to) / index_of(meeting.from);
 }
 
 /// Between two media by their indices; in air as the material says.
 glm::dvec3 Shader::reflectance_at(const Meeting& meeting, const Surface& s, double cosine) const {
-    const Optics& m = context_.surfaces.optics(s.material);
+    const Optics& m = s.optics;
     if (meeting.wall && meeting.from != Media::air && meeting.to != Media::air)
         return glm::dvec3(fresnel_dielectric(cosine, relative_index(meeting, s)));
     return m.wall_reflectance(cosine, meeting.wall ? meeting.to == Media::air : m.leaves(s.front));
@@ -151,7 +151,7 @@ glm::dvec3 Shader::half_vector(const Surface& s, const glm::dvec3& view, double 
 
 /// Both branches of a surface, and what it sends by itself (docs/frame.md section 4).
 Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meeting& meeting) const {
-    const Optics& m = context_.surfaces.optics(s.material);
+    const Optics& m = s.optics;
     const PictureSettings& settings = context_.settings;
     Scattered out;
     if (m.unlit) {
@@ -172,7 +172,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         const double above = glm::dot(reflected, s.normal);
         reflection.weight *= above > 0 ? ggx_masking(above, alpha) : 0;
     } else if (!mirror) {
-        const Albedos::Means means = context_.albedos.at(s.material, cosine);
+        const Albedos::Means means = context_.albedos.at(s, cosine);
         reflection.weight = transmits ? reflection.weight * (means.normal + means.grazing)
                                       : glm::mix(means.dielectric, means.metal(s.base_color), m.metallic);
     }
@@ -208,7 +208,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
 
 /// Light from the lamps, the sun and the diffuse sky (docs/frame.md section 5).
 glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path& path) {
-    const Optics& m = context_.surfaces.optics(s.material);
+    const Optics& m = s.optics;
     if (m.unlit) return glm::dvec3(0);
     const glm::dvec3 view = -path.direction;
     glm::dvec3 sum(0);
@@ -233,14 +233,14 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
 }
 
 glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& path) {
-    const Optics& m = context_.surfaces.optics(s.material);
+    const Optics& m = s.optics;
     glm::dvec3 diffuse = (1 - m.metallic) * (1 - m.transmission) * s.base_color / pi;
     if (diffuse == glm::dvec3(0)) return diffuse;
     // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
     diffuse *= 1 - largest(m.roughness < MIRROR_ROUGHNESS ? m.face_reflectance(cosine, m.leaves(s.front))
-                                                          : context_.albedos.at(s.material, cosine).dielectric);
-    const glm::dvec3 light = diffuse * context_.surroundings.irradiance(s.normal);
+                                                          : context_.albedos.at(s, cosine).dielectric);
+    const glm::dvec3 light = m.occlusion * diffuse * context_.surroundings.irradiance(s.normal);
     if (!context_.settings.ambient) return light;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
     const glm::dvec2 random = random_pair(path.seed, sample_, Purpose::sky);
@@ -263,9 +263,9 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
         const OracleHit& hit = meeting.hit;
         share *= meeting.passed;
         if (!hit.hit()) return share;
-        const Optics& m = context_.surfaces.optics_of_triangle(hit.triangle);
-        if (!m.transmits()) return glm::dvec3(0);
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
+        const Optics& m = s.optics;
+        if (!m.transmits()) return glm::dvec3(0);
         const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
         share *= (1.0 - reflectance_at(meeting, s, cosine)) * (1 - m.metallic) * m.transmission * s.base_color *
                  meeting.beside;

@@ -52,7 +52,8 @@ Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene)
 
 Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
-    const double weights[3] = {std::max(0.0, 1 - u - v), u, v};
+    const Place place{corners, {std::max(0.0, 1 - u - v), u, v}};
+    const glm::dvec3& weights = place.weights;
     glm::dvec3 p[3], n[3];
     for (int i = 0; i < 3; i++) {
         p[i] = geometry_.positions[corners[i]];
@@ -70,13 +71,15 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     s.material = geometry_.materials[triangle];
     const glm::dvec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double size = glm::length(area);
-    glm::dvec3 normal = interpolate(n);
-    normal = glm::dot(normal, normal) > 0 ? glm::normalize(normal) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 interpolated = interpolate(n);
+    const glm::dvec3 normal =
+        glm::dot(interpolated, interpolated) > 0 ? glm::normalize(interpolated) : glm::dvec3(0, 1, 0);
     s.geometric = size > 0 ? area / size : normal;
     s.front = glm::dot(s.geometric, direction) < 0;
     if (!s.front) s.geometric = -s.geometric;
     const double side = glm::dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1 : 1;
-    s.normal = optics::visible_normal(side * normal, s.geometric, -direction);
+    s.normal =
+        optics::visible_normal(side * bent(s.material, place, interpolated).value_or(normal), s.geometric, -direction);
     s.shadow_start = glm::dvec3(0);
     for (int i = 0; i < 3; i++) {
         // The position, lifted to the plane through each corner along the corner's normal.
@@ -85,16 +88,8 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
         const bool stray = glm::dot(corner_normal, s.geometric) <= STRAY_NORMAL;
         s.shadow_start += weights[i] * (stray ? s.position : s.position - below * corner_normal);
     }
-    s.base_color = optics_[s.material].base_color;
-    if (!geometry_.colors.empty()) {
-        const glm::dvec4 colors[3] = {geometry_.colors[corners.x], geometry_.colors[corners.y],
-                                      geometry_.colors[corners.z]};
-        s.base_color *= glm::dvec3(interpolate(colors));
-    }
-    if (const int texture = scene_.materials[s.material].base_color_texture; texture >= 0) {
-        const glm::dvec2 uvs[3] = {geometry_.uvs[corners.x], geometry_.uvs[corners.y], geometry_.uvs[corners.z]};
-        s.base_color *= sample_color(scene_.textures[size_t(texture)], interpolate(uvs));
-    }
+    s.optics = evaluate(s.material, place);
+    s.base_color = s.optics.base_color;
     return s;
 }
 
@@ -112,6 +107,56 @@ bool Surfaces::blocks_itself(const Surface& s, uint32_t triangle, const glm::dve
                      c = geometry_.positions[corners.z];
     const double least = std::min({area(a, b, crossing), area(b, c, crossing), area(c, a, crossing)});
     return least >= -OWN_TRIANGLE_RIM * area(a, b, c);
+}
+
+glm::dvec2 Surfaces::coordinates(const MaterialTexture& use, const Place& place) const {
+    const glm::dvec2 uv = place.interpolate(geometry_.uv_set(use.uv_set));
+    return glm::dmat2(use.uv_matrix) * uv + glm::dvec2(use.uv_offset);
+}
+
+double Surfaces::number(const MaterialTexture& use, const Place& place) const {
+    if (!use) return 1;
+    return sample_data(scene_.textures[size_t(use.texture)], coordinates(use, place))[int(use.channel)];
+}
+
+glm::dvec3 Surfaces::color(const MaterialTexture& use, const Place& place) const {
+    return use ? sample_color(scene_.textures[size_t(use.texture)], coordinates(use, place)) : glm::dvec3(1);
+}
+
+Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
+    const Material& m = scene_.materials[material];
+    Optics o = optics_[material];
+    if (!geometry_.colors.empty()) o.base_color *= glm::dvec3(place.interpolate(geometry_.colors));
+    o.base_color *= color(m.base_color_texture, place);
+    o.emissive *= color(m.emissive_texture, place);
+    o.metallic *= number(m.metallic_texture, place);
+    o.roughness *= number(m.roughness_texture, place);
+    o.transmission *= number(m.transmission_texture, place);
+    if (m.specular_texture || m.specular_color_texture) {
+        o.f90 *= number(m.specular_texture, place);
+        const double normal = m.ior == 0 ? 1 : std::pow((o.ior - 1) / (o.ior + 1), 2);
+        o.f0 = glm::min(normal * glm::dvec3(m.specular_color) * color(m.specular_color_texture, place), 1.0) * o.f90;
+        o.specified = true;
+    }
+    o.occlusion = 1 + double(m.occlusion_strength) * (number(m.occlusion_texture, place) - 1);
+    return o;
+}
+
+/// glTF 2.0, section 3.9.3: red, green and blue are the normal's parts along the tangent, the bitangent and the normal,
+/// which are interpolated and, as MikkTSpace has it, not made unit before.
+std::optional<glm::dvec3> Surfaces::bent(uint32_t material, const Place& place, const glm::dvec3& normal) const {
+    const Material& m = scene_.materials[material];
+    if (!m.normal_texture || geometry_.tangents.empty()) return {};
+    const glm::dvec4 along = place.interpolate(geometry_.tangents);
+    const glm::dvec3 tangent(along);
+    if (along.w == 0 || glm::dot(tangent, tangent) == 0) return {};
+    const glm::dvec3 bitangent = (along.w < 0 ? -1.0 : 1.0) * glm::cross(normal, tangent);
+    const glm::dvec3 texel(
+        sample_data(scene_.textures[size_t(m.normal_texture.texture)], coordinates(m.normal_texture, place)));
+    const glm::dvec3 parts = (texel * 2.0 - 1.0) * glm::dvec3(m.normal_scale, m.normal_scale, 1);
+    const glm::dvec3 sum = tangent * parts.x + bitangent * parts.y + normal * parts.z;
+    if (glm::dot(sum, sum) == 0) return {};
+    return glm::normalize(sum);
 }
 
 glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {

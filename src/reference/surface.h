@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "scene/environment.h"
@@ -10,17 +11,19 @@
 
 namespace peelray {
 
-/// A material's constants.
+/// A material: its constants, or what its textures make of them at a point.
 struct Optics {
-    glm::dvec3 base_color, emissive, absorption;  ///< absorption: per world unit inside the volume
-    double metallic, roughness, transmission;
-    double ior;      ///< ≥ 1
-    bool specified;  ///< the dielectric part's reflectance is stated: Schlick's, from f0 to f90; else it follows from
-                     ///< ior
-    glm::dvec3 f0;
-    double f90;
-    bool thin, unlit;
+    glm::dvec3 base_color{1}, emissive{0}, absorption{0};  ///< absorption: per world unit inside the volume
+    double metallic = 0, roughness = 1, transmission = 0;
+    double ior = 1;          ///< ≥ 1
+    bool specified = false;  ///< the dielectric part's reflectance is stated: Schlick's, from f0 to f90; else it
+                             ///< follows from ior
+    glm::dvec3 f0{0};
+    double f90 = 1;
+    double occlusion = 1;  ///< share of the sky's diffuse light that arrives
+    bool thin = true, unlit = false;
 
+    Optics() = default;
     explicit Optics(const Material& material);
     bool transmits() const { return transmission > 0 && metallic < 1; }
     /// Is a ray that meets the surface from its `front` or back inside of the volume?
@@ -35,13 +38,14 @@ struct Optics {
 struct Surface {
     glm::dvec3 position;
     glm::dvec3 geometric;     ///< unit normal of the triangle, on the ray's side
-    glm::dvec3 normal;        ///< interpolated, unit, on the ray's side
+    glm::dvec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
     glm::dvec3 base_color;
     double extent;  ///< the largest coordinate of the triangle
     double error;   ///< bound on the position's rounding error, world units
     bool front;     ///< the ray comes from the side that the normals point to
     uint32_t material;
+    Optics optics;  ///< the material here
 
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
     /// a triangle that coincides with the surface's own is not hit either.
@@ -60,11 +64,31 @@ class Surfaces {
     Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
+    /// A material's constants, without its textures.
     const Optics& optics(uint32_t material) const { return optics_[material]; }
     uint32_t material_of_triangle(uint32_t triangle) const { return geometry_.materials[triangle]; }
     const Optics& optics_of_triangle(uint32_t triangle) const { return optics_[geometry_.materials[triangle]]; }
 
   private:
+    /// A place in a triangle.
+    struct Place {
+        glm::uvec3 corners;
+        glm::dvec3 weights;
+        template <typename T>
+        auto interpolate(const std::vector<T>& values) const {
+            return glm::vec<T::length(), double>(values[corners.x]) * weights.x +
+                   glm::vec<T::length(), double>(values[corners.y]) * weights.y +
+                   glm::vec<T::length(), double>(values[corners.z]) * weights.z;
+        }
+    };
+    /// Texture coordinates of a use; the texture is there.
+    glm::dvec2 coordinates(const MaterialTexture& use, const Place& place) const;
+    /// The single number that a use reads, 1 where there is no texture.
+    double number(const MaterialTexture& use, const Place& place) const;
+    glm::dvec3 color(const MaterialTexture& use, const Place& place) const;
+    Optics evaluate(uint32_t material, const Place& place) const;
+    /// The interpolated normal as the material's normal texture bends it, unit; nothing where none does.
+    std::optional<glm::dvec3> bent(uint32_t material, const Place& place, const glm::dvec3& normal) const;
     const Scene& scene_;
     const Geometry& geometry_;
     std::vector<Optics> optics_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "base/error.h"
 #include "common/material.h"
 #include "render/fresnel_fit.h"
 #include "scene/sidedness.h"
@@ -17,8 +19,11 @@ void set_reflectance(GpuMaterial& m, const Material& material) {
     const double root = (m.ior - 1.0) / (m.ior + 1.0), f0 = infinite ? 1 : root * root;
     m.f0 = glm::min(float(f0) * material.specular_color, glm::vec3(1)) * material.specular;
     m.f90 = material.specular;
-    if (infinite || material.specular != 1 || material.specular_color != glm::vec3(1))
-        m.flags |= MATERIAL_SCHLICK;
+    const bool specified = infinite || material.specular != 1 || material.specular_color != glm::vec3(1) ||
+                           material.specular_texture || material.specular_color_texture;
+    if (specified) m.flags |= MATERIAL_SCHLICK;
+    if (specified)
+        m.fresnel_fit = float(f0) * material.specular_color;
     else
         m.fresnel_fit = fresnel_fit(m.ior);
 }
@@ -30,7 +35,8 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.emissive = material.emissive;
     m.roughness = material.roughness;
     m.transmission = material.transmission;
-    m.texture = material.base_color_texture;
+    m.normal_scale = material.normal_scale;
+    m.occlusion_strength = material.occlusion_strength;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
               (colored ? MATERIAL_COLORED : 0u) | (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
     set_reflectance(m, material);
@@ -44,25 +50,116 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     return m;
 }
 
+/// What a device can hold of all textures, in rows of texels.
+uint64_t most_rows(const Device& device) {
+    constexpr uint64_t layer_rows = uint64_t(1) << (TEXEL_LAYER_BITS - TEXEL_ROW_BITS);
+    constexpr uint64_t addressed = (uint64_t(1) << 32) >> TEXEL_ROW_BITS;
+    return std::min<uint64_t>(addressed, device.limits().maxImageArrayLayers * layer_rows);
+}
+
+/// The textures that materials use, each from the start of a row on.
+class TextureStore {
+  public:
+    explicit TextureStore(const Scene& scene) : scene_(scene), rows_(scene.textures.size(), ~uint64_t(0)) {}
+
+    /// An entry of the table for what a material uses; -1: it uses none. `is_data`: not encoded as sRGB.
+    int add(const MaterialTexture& use, bool is_data, uint64_t vertices) {
+        if (!use) return -1;
+        const Texture& texture = scene_.textures[size_t(use.texture)];
+        uint64_t& row = rows_[size_t(use.texture)];
+        if (row == ~uint64_t(0)) {
+            row = row_count_;
+            row_count_ += (words(texture).size() + (1u << TEXEL_ROW_BITS) - 1) >> TEXEL_ROW_BITS;
+        }
+        GpuTexture entry{uint32_t(row << TEXEL_ROW_BITS), texture.width, texture.height, 0};
+        entry.flags = uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2 | (texture.nearest ? USE_NEAREST : 0u) |
+                      (is_data ? USE_DATA : 0u) | (texture.deep_texels.empty() ? 0u : USE_DEEP);
+        entry.first_uv = uint32_t(use.uv_set * vertices);
+        entry.u_axis = use.uv_matrix[0];
+        entry.v_axis = use.uv_matrix[1];
+        entry.uv_offset = use.uv_offset;
+        if (use.uv_matrix != glm::mat2(1) || use.uv_offset != glm::vec2(0)) entry.flags |= USE_MOVED;
+        const auto same = [&](const GpuTexture& other) { return std::memcmp(&entry, &other, sizeof entry) == 0; };
+        const auto index = std::find_if(table.begin(), table.end(), same) - table.begin();
+        if (size_t(index) == table.size()) table.push_back(entry);
+        return int(index);
+    }
+
+    Image2D upload(Device& device, Commands& commands) const {
+        constexpr uint64_t width = 1u << TEXEL_ROW_BITS, layer_rows = 1u << (TEXEL_LAYER_BITS - TEXEL_ROW_BITS);
+        if (row_count_ == 0) return {};
+        if (row_count_ > most_rows(device))
+            fail(
+                "the textures have {} million texels, more than the {} million that the device '{}' holds: make them "
+                "smaller",
+                row_count_ * width / 1'000'000, most_rows(device) * width / 1'000'000, device.info().name);
+        Image2D image(device, "textures", uint32_t(width), uint32_t(std::min(row_count_, layer_rows)),
+                      VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                      VK_IMAGE_ASPECT_COLOR_BIT, uint32_t((row_count_ + layer_rows - 1) / layer_rows), true);
+        for (size_t i = 0; i < rows_.size(); i++)
+            if (rows_[i] != ~uint64_t(0)) commands.upload(image, words(scene_.textures[i]), rows_[i]);
+        return image;
+    }
+
+    std::vector<GpuTexture> table;
+
+  private:
+    static std::span<const uint32_t> words(const Texture& texture) {
+        if (texture.deep_texels.empty()) return texture.texels;
+        return {reinterpret_cast<const uint32_t*>(texture.deep_texels.data()), 2 * texture.deep_texels.size()};
+    }
+
+    const Scene& scene_;
+    std::vector<uint64_t> rows_;  ///< of each texture the first
+    uint64_t row_count_ = 0;
+};
+
+/// Texture coordinates, set after set, then the tangents, in one buffer: passes that shade bind as many as any device
+/// allows.
+Buffer upload_uvs(Device& device, Commands& commands, const Assembly& assembly) {
+    const uint64_t bytes = assembly.uvs.size() * sizeof(glm::vec2), sets = 1 + assembly.more_uvs.size();
+    Buffer buffer(device, "texture coordinates",
+                  std::max<uint64_t>(sets * bytes + assembly.tangents.size() * sizeof(glm::vec4), sizeof(glm::vec2)));
+    const auto put = [&](const auto& list, uint64_t offset) {
+        if (!list.empty()) commands.upload(buffer, std::span(list), offset);
+    };
+    put(assembly.uvs, 0);
+    for (size_t set = 0; set < assembly.more_uvs.size(); set++) put(assembly.more_uvs[set], bytes * (1 + set));
+    put(assembly.tangents, bytes * sets);
+    return buffer;
+}
+
 }  // namespace
 
 BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly) {
+    std::vector<bool> used(scene.materials.size(), false);
+    for (uint32_t material : assembly.materials) used[material] = true;
+    BaseColorBuffers out;
+    out.first_tangent = uint32_t(assembly.uvs.size() * (1 + assembly.more_uvs.size()));
+    TextureStore textures(scene);
     std::vector<GpuMaterial> materials;
-    for (const Material& material : scene.materials)
-        materials.push_back(gpu_material(material, !assembly.colors.empty()));
-    std::vector<GpuTexture> infos;
-    std::vector<uint32_t> texels;
-    for (const Texture& texture : scene.textures) {
-        const uint32_t flags = uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2 | (texture.nearest ? 16u : 0u);
-        infos.push_back({uint32_t(texels.size()), texture.width, texture.height, flags});
-        texels.insert(texels.end(), texture.texels.begin(), texture.texels.end());
+    for (size_t i = 0; i < scene.materials.size(); i++) {
+        const Material& material = scene.materials[i];
+        GpuMaterial m = gpu_material(material, !assembly.colors.empty());
+        m.first_tangent = out.first_tangent;
+        for (int k = 0; k < TEXTURE_USES; k++) {
+            const MaterialTexture& use = material.*material_textures[size_t(k)];
+            const bool is_data = k != TEXTURE_BASE_COLOR && k != TEXTURE_EMISSIVE && k != TEXTURE_SPECULAR_COLOR;
+            m.textures[k] = used[i] ? textures.add(use, is_data, assembly.uvs.size()) : -1;
+            m.channels |= use.channel << 2 * k;
+            if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
+            out.textured = true;
+            if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
+        }
+        materials.push_back(m);
     }
-    return {upload(device, commands, "materials", materials),
-            upload(device, commands, "texture table", infos),
-            upload(device, commands, "textures", texels),
-            upload(device, commands, "texture coordinates", assembly.uvs),
-            upload(device, commands, "vertex colours", assembly.colors),
-            upload(device, commands, "triangle materials", assembly.materials)};
+    out.materials = upload(device, commands, "materials", materials);
+    out.texture_infos = upload(device, commands, "texture table", textures.table);
+    out.texels = textures.upload(device, commands);
+    out.uvs = upload_uvs(device, commands, assembly);
+    out.colors = upload(device, commands, "vertex colours", assembly.colors);
+    out.triangle_materials = upload(device, commands, "triangle materials", assembly.materials);
+    return out;
 }
 
 }  // namespace peelray

@@ -52,6 +52,7 @@ Deformer::Deformer(Device& device, const Scene& scene, const Moment& moment, con
     : device_(device), places_(assembly.pieces) {
     if (places_.empty()) return;
     Commands commands(device);
+    has_tangents_ = !assembly.tangents.empty();
     uint32_t groups = 0;
     for (const Assembly::Piece& place : places_) {
         const Primitive& primitive = primitive_of(scene, place);
@@ -81,6 +82,7 @@ Deformer::Deformer(Device& device, const Scene& scene, const Moment& moment, con
     piece_table_ = upload(device, commands, "deforming pieces", pieces_);
     rest_positions_ = upload(device, commands, "vertices at rest", gathered_.positions);
     rest_normals_ = upload(device, commands, "normals at rest", gathered_.normals);
+    if (has_tangents_) rest_tangents_ = upload(device, commands, "tangents at rest", gathered_.tangents);
     influences_ = upload(device, commands, "joint weights", gathered_.influences);
     targets_ = upload(device, commands, "morph targets", gathered_.targets);
     weights_ = Buffer(device, "weights of morph targets", uint64_t(weight_count_) * 4);
@@ -92,6 +94,9 @@ void Deformer::add_rest(const Primitive& primitive, DeformPiece& piece) {
     piece.first_rest = uint32_t(gathered_.positions.size());
     gathered_.positions.insert(gathered_.positions.end(), primitive.positions.begin(), primitive.positions.end());
     gathered_.normals.insert(gathered_.normals.end(), primitive.normals.begin(), primitive.normals.end());
+    if (!has_tangents_) return;
+    gathered_.tangents.insert(gathered_.tangents.end(), primitive.tangents.begin(), primitive.tangents.end());
+    gathered_.tangents.resize(gathered_.positions.size(), glm::vec4(0));
 }
 
 /// As many influences for each vertex as the one with the most of them has.
@@ -122,6 +127,7 @@ void Deformer::add_targets(const Primitive& primitive, DeformPiece& piece) {
     for (const MorphTarget& target : primitive.targets) {
         append(target.positions);
         append(target.normals);
+        if (has_tangents_) append(target.tangents);
     }
 }
 
@@ -155,13 +161,17 @@ void Deformer::turn_over(Commands& commands, size_t piece, const Primitive& prim
 }
 
 void Deformer::record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles,
-                      const Buffer& normals) const {
+                      const Buffer& normals, const BaseColorBuffers& base_colors) const {
     if (empty()) return;
     commands.begin_group("animate");
-    commands.run(device_.pass("deform"),
+    DeformParams params = params_;
+    params.first_tangent = base_colors.first_tangent;
+    commands.run(device_.pass("deform", {{"with_tangents", has_tangents_}}),
                  {{"pieces", piece_table_},
                   {"rest_positions", rest_positions_},
                   {"rest_normals", rest_normals_},
+                  Binding::if_used("rest_tangents", rest_tangents_),
+                  Binding::if_used("tangents", has_tangents_ ? &base_colors.uvs : nullptr),
                   {"influences", influences_},
                   {"targets", targets_},
                   {"target_weights", weights_},
@@ -170,21 +180,21 @@ void Deformer::record(Commands& commands, const BodyTable& bodies, const Triangl
                   {"normals", normals},
                   {"body_lower", bodies.lower},
                   {"body_upper", bodies.upper}},
-                 params_, groups_for(params_.groups, 1));
+                 params, groups_for(params.groups, 1));
     if (flat_)
         commands.run(device_.pass("deform_flat"),
                      {{"pieces", piece_table_},
                       {"positions", triangles.positions},
                       {"triangles", triangles.triangles},
                       {"normals", normals}},
-                     params_, groups_for(params_.triangles, 64));
+                     params, groups_for(params.triangles, 64));
     commands.end_group();
 }
 
 uint64_t Deformer::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer :
-         {&piece_table_, &rest_positions_, &rest_normals_, &influences_, &targets_, &weights_, &joints_})
+    for (const Buffer* buffer : {&piece_table_, &rest_positions_, &rest_normals_, &rest_tangents_, &influences_,
+                                 &targets_, &weights_, &joints_})
         bytes += buffer->bytes();
     return bytes;
 }

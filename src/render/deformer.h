@@ -20,10 +20,10 @@ class Deformer {
     /// inside out, or back, its triangles in `triangles` are turned over.
     void pose(Commands& commands, const Scene& scene, const Moment& moment, const Buffer& triangles);
 
-    /// Records the passes into the group "animate": vertices go to positions and normals, bounds to the bodies,
-    /// whose bounds have been emptied.
-    void record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles,
-                const Buffer& normals) const;
+    /// Records the passes into the group "animate": vertices go to positions, normals and, if there are any, tangents,
+    /// bounds to the bodies, whose bounds have been emptied.
+    void record(Commands& commands, const BodyTable& bodies, const TriangleBuffers& triangles, const Buffer& normals,
+                const BaseColorBuffers& base_colors) const;
 
     uint64_t bytes() const;
 
@@ -38,14 +38,15 @@ class Deformer {
     std::vector<DeformPiece> pieces_;
     std::vector<bool> mirrored_;  ///< as the triangles lie in their buffer now
     DeformParams params_{};
-    bool flat_ = false;
+    bool flat_ = false, has_tangents_ = false;
     /// What the constructor gathers for the upload.
     struct Gathered {
         std::vector<glm::vec3> positions, normals, targets;
+        std::vector<glm::vec4> tangents;
         std::vector<JointInfluence> influences;
     } gathered_;
     uint32_t joint_count_ = 0, weight_count_ = 0;
-    Buffer piece_table_, rest_positions_, rest_normals_, influences_, targets_, weights_, joints_;
+    Buffer piece_table_, rest_positions_, rest_normals_, rest_tangents_, influences_, targets_, weights_, joints_;
 };
 
 }  // namespace peelray

@@ -126,7 +126,7 @@ uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& mo
 
 void GpuScene::record_animation(Commands& commands, const BodyTable& bodies) {
     bodies.record_emptying(commands, fixed_bodies_);
-    deformer_.record(commands, bodies, triangles, normals);
+    deformer_.record(commands, bodies, triangles, normals, base_colors);
     generators_.record(commands, bodies, triangles, normals, instances);
 }
 

@@ -10,6 +10,8 @@ bool ObjectSummary::reflects_or_refracts(const PictureSettings& settings) const 
 }
 
 ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
+    std::vector<float> smoothest;
+    for (const Material& material : scene.materials) smoothest.push_back(least_roughness(scene, material));
     for (const Geometry::Object& object : geometry.objects) {
         ObjectSummary s;
         s.first = object.first;
@@ -22,7 +24,7 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             if (m.unlit) continue;
             s.transmits |= transmits(m);
             s.metallic |= m.metallic > float(MOSTLY_METAL);
-            s.smoothest = std::min(s.smoothest, m.roughness);
+            s.smoothest = std::min(s.smoothest, smoothest[last]);
             s.roughest = std::max(s.roughest, m.roughness);
         }
         objects_.push_back(s);

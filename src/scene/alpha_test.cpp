@@ -29,11 +29,12 @@ bool AlphaTest::is_present(uint32_t triangle, double u, double v) const {
     double alpha = double(m.alpha);
     if (const auto& colors = geometry_->colors; !colors.empty())
         alpha *= interpolate(double(colors[corners.x].w), double(colors[corners.y].w), double(colors[corners.z].w));
-    if (m.base_color_texture >= 0) {
-        const auto& uvs = geometry_->uvs;
-        alpha *= sample_alpha(
-            scene_->textures[size_t(m.base_color_texture)],
-            interpolate(glm::dvec2(uvs[corners.x]), glm::dvec2(uvs[corners.y]), glm::dvec2(uvs[corners.z])));
+    if (const MaterialTexture& from = m.base_color_texture) {
+        const auto& uvs = geometry_->uv_set(from.uv_set);
+        const glm::dvec2 uv =
+            interpolate(glm::dvec2(uvs[corners.x]), glm::dvec2(uvs[corners.y]), glm::dvec2(uvs[corners.z]));
+        alpha *= sample_alpha(scene_->textures[size_t(from.texture)],
+                              glm::dmat2(from.uv_matrix) * uv + glm::dvec2(from.uv_offset));
     }
     return alpha >= double(m.alpha_cutoff) - ALPHA_ROUNDING;
 }

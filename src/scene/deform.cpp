@@ -13,11 +13,14 @@ namespace {
 void morph(const Primitive& primitive, std::span<const float> weights, Deformed& out) {
     out.positions = primitive.positions;
     out.normals = primitive.normals;
+    out.tangents = primitive.tangents;
     for (size_t k = 0; k < std::min(primitive.targets.size(), weights.size()); k++) {
         const MorphTarget& target = primitive.targets[k];
         if (weights[k] == 0) continue;
         for (size_t i = 0; i < target.positions.size(); i++) out.positions[i] += weights[k] * target.positions[i];
         for (size_t i = 0; i < target.normals.size(); i++) out.normals[i] += weights[k] * target.normals[i];
+        for (size_t i = 0; i < std::min(target.tangents.size(), out.tangents.size()); i++)
+            out.tangents[i] += glm::vec4(weights[k] * target.tangents[i], 0);
     }
 }
 
@@ -30,6 +33,12 @@ glm::mat4 blended(const JointWeights& vertex, const std::vector<glm::mat4>& join
         weight += vertex.weights[k];
     }
     return weight > 0 ? sum : otherwise;
+}
+
+/// A tangent lies in the surface and goes with it; the bitangent's side changes where the transform mirrors.
+glm::vec4 moved_tangent(const glm::vec4& tangent, const glm::mat4& matrix, bool mirrors) {
+    const glm::vec3 moved = unit_or(glm::mat3(matrix) * glm::vec3(tangent), glm::vec3(0));
+    return glm::vec4(moved, moved == glm::vec3(0) ? 0 : mirrors ? -tangent.w : tangent.w);
 }
 
 }  // namespace
@@ -66,6 +75,7 @@ Deformed deform(const Scene& scene, const Node& node, const Primitive& primitive
         if (i == 0) out.mirrors = to_normal.mirrors;
         out.positions[i] = glm::vec3(matrix * glm::vec4(out.positions[i], 1));
         out.normals[i] = to_normal(out.normals[i], primitive.normals[i]);
+        if (!out.tangents.empty()) out.tangents[i] = moved_tangent(out.tangents[i], matrix, to_normal.mirrors);
     }
     if (primitive.flat)
         for (const glm::uvec3& t : primitive.triangles) {
@@ -85,6 +95,9 @@ Deformed transformed(const Primitive& primitive, const glm::mat4& matrix) {
     for (const glm::vec3& p : primitive.positions) out.positions.push_back(glm::vec3(matrix * glm::vec4(p, 1)));
     for (const glm::vec3& normal : primitive.normals)
         out.normals.push_back(to_normal(normal, unit_or(normal, glm::vec3(0, 1, 0))));
+    out.tangents.reserve(primitive.tangents.size());
+    for (const glm::vec4& tangent : primitive.tangents)
+        out.tangents.push_back(moved_tangent(tangent, matrix, to_normal.mirrors));
     return out;
 }
 

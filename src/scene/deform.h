@@ -10,7 +10,8 @@ namespace peelray {
 /// A primitive's vertices in world space.
 struct Deformed {
     std::vector<glm::vec3> positions, normals;
-    bool mirrors = false;  ///< the transform turns the triangles inside out
+    std::vector<glm::vec4> tangents;  ///< empty where the primitive has none
+    bool mirrors = false;             ///< the transform turns the triangles inside out
 };
 
 /// Does the primitive have only its shape at rest?

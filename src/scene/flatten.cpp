@@ -11,7 +11,8 @@ namespace {
 
 struct Totals {
     uint64_t vertices = 0, triangles = 0;
-    bool colors = false;
+    bool colors = false, tangents = false;
+    size_t more_uvs = 0;  ///< sets of texture coordinates beyond the first
 };
 
 Totals count(const Scene& scene) {
@@ -22,6 +23,8 @@ Totals count(const Scene& scene) {
             totals.vertices += primitive.positions.size();
             totals.triangles += primitive.triangles.size();
             totals.colors |= !primitive.colors.empty();
+            totals.tangents |= !primitive.tangents.empty();
+            totals.more_uvs = std::max(totals.more_uvs, primitive.more_uvs.size());
         }
     }
     return totals;
@@ -33,16 +36,24 @@ void append_attributes(Geometry& out, const Primitive& primitive, const Totals& 
         out.uvs.resize(out.positions.size(), glm::vec2(0));
     else
         out.uvs.insert(out.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
+    for (size_t set = 0; set < totals.more_uvs; ++set) {
+        if (set < primitive.more_uvs.size())
+            out.more_uvs[set].insert(out.more_uvs[set].end(), primitive.more_uvs[set].begin(),
+                                     primitive.more_uvs[set].end());
+        out.more_uvs[set].resize(out.positions.size(), glm::vec2(0));
+    }
     if (totals.colors && primitive.colors.empty())
         out.colors.resize(out.positions.size(), glm::vec4(1));
     else
         out.colors.insert(out.colors.end(), primitive.colors.begin(), primitive.colors.end());
 }
 
-void append_vertices(Geometry& out, const Deformed& vertices, const Node& node) {
+void append_vertices(Geometry& out, const Deformed& vertices, const Node& node, const Totals& totals) {
     for (size_t i = 0; i < vertices.positions.size(); ++i) check_finite(vertices.positions[i], node, i);
     out.positions.insert(out.positions.end(), vertices.positions.begin(), vertices.positions.end());
     out.normals.insert(out.normals.end(), vertices.normals.begin(), vertices.normals.end());
+    out.tangents.insert(out.tangents.end(), vertices.tangents.begin(), vertices.tangents.end());
+    if (totals.tangents) out.tangents.resize(out.positions.size(), glm::vec4(0));
 }
 
 void append_triangles(Geometry& out, const Primitive& primitive, uint32_t first, bool mirrors) {
@@ -73,6 +84,7 @@ Geometry flatten(const Scene& scene, const Moment& moment) {
     out.positions.reserve(totals.vertices);
     out.normals.reserve(totals.vertices);
     out.uvs.reserve(totals.vertices);
+    out.more_uvs.resize(totals.more_uvs);
     if (totals.colors) out.colors.reserve(totals.vertices);
     out.triangles.reserve(totals.triangles);
     out.materials.reserve(totals.triangles);
@@ -86,7 +98,7 @@ Geometry flatten(const Scene& scene, const Moment& moment) {
         for (const Primitive& primitive : mesh.primitives) {
             const auto first = static_cast<uint32_t>(out.positions.size());
             const Deformed vertices = placed(scene, moment, n, primitive);
-            append_vertices(out, vertices, node);
+            append_vertices(out, vertices, node, totals);
             append_attributes(out, primitive, totals);
             append_triangles(out, primitive, first, vertices.mirrors);
         }

@@ -60,19 +60,6 @@ void gather(std::vector<T>& values, const std::vector<uint32_t>& from) {
     values = std::move(out);
 }
 
-/// Vertex i becomes a copy of vertex from[i].
-void gather_vertices(Primitive& p, const std::vector<uint32_t>& from) {
-    gather(p.positions, from);
-    gather(p.normals, from);
-    gather(p.uvs, from);
-    gather(p.colors, from);
-    gather(p.joints, from);
-    for (MorphTarget& target : p.targets) {
-        gather(target.positions, from);
-        gather(target.normals, from);
-    }
-}
-
 /// One vertex per corner.
 void unshare(Primitive& p) {
     std::vector<uint32_t> from;
@@ -230,6 +217,21 @@ void take_vertices(Primitive& p, const std::vector<Completion>& parts, const std
 }
 
 }  // namespace
+
+void gather_vertices(Primitive& p, const std::vector<uint32_t>& from) {
+    gather(p.positions, from);
+    gather(p.normals, from);
+    gather(p.tangents, from);
+    gather(p.uvs, from);
+    for (std::vector<glm::vec2>& set : p.more_uvs) gather(set, from);
+    gather(p.colors, from);
+    gather(p.joints, from);
+    for (MorphTarget& target : p.targets) {
+        gather(target.positions, from);
+        gather(target.normals, from);
+        gather(target.tangents, from);
+    }
+}
 
 void make_flat(Primitive& p) {
     p.flat = true;

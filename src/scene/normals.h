@@ -5,6 +5,9 @@
 
 namespace peelray {
 
+/// Vertex i becomes a copy of vertex from[i]. What triangles name is the caller's.
+void gather_vertices(Primitive& primitive, const std::vector<uint32_t>& from);
+
 /// One vertex per triangle corner with the triangle's own normal (what glTF asks for where normals are missing).
 void make_flat(Primitive& primitive);
 

@@ -4,14 +4,21 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/sampling.h"
 
 namespace peelray {
+
+float least_roughness(const Scene& scene, const Material& m) {
+    if (!m.roughness_texture) return m.roughness;
+    return m.roughness *
+           float(least_value(scene.textures[size_t(m.roughness_texture.texture)], m.roughness_texture.channel));
+}
 
 bool is_reflective(const Scene& scene, uint32_t spp) {
     const auto reflects = [&](const Primitive& primitive) {
         const Material& m = scene.materials[primitive.material];
-        return !primitive.triangles.empty() && !m.unlit &&
-               (transmits(m) || is_reflection_traced(m.roughness, m.metallic > float(MOSTLY_METAL), spp));
+        if (primitive.triangles.empty() || m.unlit) return false;
+        return transmits(m) || is_reflection_traced(least_roughness(scene, m), m.metallic > float(MOSTLY_METAL), spp);
     };
     return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
         if (node.mesh < 0) return false;

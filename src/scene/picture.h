@@ -71,10 +71,13 @@ struct Picture {
     RayCounts rays;
 };
 
-/// Does light pass through the material?
+/// Does light pass through the material, somewhere at least?
 inline bool transmits(const Material& material) {
-    return material.transmission > 0 && material.metallic < 1;
+    return material.transmission > 0 && (material.metallic < 1 || material.metallic_texture);
 }
+
+/// The material's roughness where it is smoothest.
+float least_roughness(const Scene& scene, const Material& material);
 
 /// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more
 /// than half.

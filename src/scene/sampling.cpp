@@ -15,12 +15,18 @@ int wrap(int i, int size, Texture::Wrap mode) {
     return m < size ? m : period - 1 - m;
 }
 
+/// Channel `i` of a texel, [0, 1].
+double channel_of(const Texture& texture, size_t texel, uint32_t i) {
+    if (!texture.deep_texels.empty()) return double(texture.deep_texels[texel] >> (16 * i) & 0xFFFF) / 65535.0;
+    return (texture.texels[texel] >> (8 * i) & 255) / 255.0;
+}
+
 template <typename Decode>
 auto sample(const Texture& texture, const glm::dvec2& uv, Decode decode) {
     const auto fetch = [&](int x, int y) {
         const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
         const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
-        return decode(texture.texels[row * texture.width + column]);
+        return decode(row * texture.width + column);
     };
     // Repeats are dropped, so that any coordinate fits an int.
     const auto place = [](double x, Texture::Wrap mode) {
@@ -34,14 +40,28 @@ auto sample(const Texture& texture, const glm::dvec2& uv, Decode decode) {
 }  // namespace
 
 glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv) {
-    return sample(texture, uv, [](uint32_t texel) {
-        const auto channel = [&](int i) { return srgb_to_linear((texel >> (8 * i) & 255) / 255.0); };
+    return sample(texture, uv, [&](size_t texel) {
+        const auto channel = [&](uint32_t i) { return srgb_to_linear(channel_of(texture, texel, i)); };
         return glm::dvec3(channel(0), channel(1), channel(2));
     });
 }
 
+glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv) {
+    return sample(texture, uv, [&](size_t texel) {
+        return glm::dvec4(channel_of(texture, texel, 0), channel_of(texture, texel, 1), channel_of(texture, texel, 2),
+                          channel_of(texture, texel, 3));
+    });
+}
+
 double sample_alpha(const Texture& texture, const glm::dvec2& uv) {
-    return sample(texture, uv, [](uint32_t texel) { return (texel >> 24) / 255.0; });
+    return sample(texture, uv, [&](size_t texel) { return channel_of(texture, texel, 3); });
+}
+
+double least_value(const Texture& texture, uint32_t channel) {
+    double least = 1;
+    const size_t count = std::max(texture.texels.size(), texture.deep_texels.size());
+    for (size_t i = 0; i < count && least > 0; i++) least = std::min(least, channel_of(texture, i, channel));
+    return least;
 }
 
 }  // namespace peelray

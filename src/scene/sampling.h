@@ -18,7 +18,12 @@ auto bilinear(const glm::dvec2& p, Fetch fetch) {
 
 /// Linear colour; wrapped, nearest or bilinear as the texture says, without mipmaps.
 glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv);
-/// The same of alpha, [0, 1].
+/// The same of all channels as they are stored, [0, 1].
+glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv);
+/// The same of alpha alone.
 double sample_alpha(const Texture& texture, const glm::dvec2& uv);
+
+/// The least value of a channel; 1 for a texture without texels.
+double least_value(const Texture& texture, uint32_t channel);
 
 }  // namespace peelray

@@ -18,27 +18,50 @@
 
 namespace peelray {
 
-/// An image of 8-bit RGBA texels, row 0 first (the glTF order: v = 0 is the first row). Colour is sRGB-encoded, alpha
-/// linear.
+/// An image of RGBA texels, row 0 first (the glTF order: v = 0 is the first row), and how it is sampled. Whether red,
+/// green and blue are sRGB-encoded is for the use to say; alpha is linear.
 struct Texture {
     enum class Wrap : uint8_t { repeat, mirror, clamp };
     std::string name;
     uint32_t width = 0, height = 0;
-    std::vector<uint32_t> texels;  ///< width·height, red in the lowest byte
+    std::vector<uint32_t> texels;       ///< width·height of 8 bits a channel, red in the lowest byte
+    std::vector<uint64_t> deep_texels;  ///< instead of them: 16 bits a channel, red in the lowest
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;  ///< magnification filter: nearest texel instead of bilinear
+};
+
+/// A texture as a material uses it. Only its default and its number alone are implicit.
+struct MaterialTexture {
+    int texture = -1;        ///< index into Scene::textures, -1: none
+    uint32_t uv_set = 0;     ///< of the primitive's texture coordinates
+    uint32_t channel = 0;    ///< what a single number is read from: 0 to 3, red to alpha
+    glm::mat2 uv_matrix{1};  ///< coordinates times this
+    glm::vec2 uv_offset{0};  ///< plus this
+
+    MaterialTexture(int number = -1) : texture(number) {}
+    bool operator==(const MaterialTexture&) const = default;
+    explicit operator bool() const { return texture >= 0; }
+    glm::vec2 place(const glm::vec2& uv) const { return uv_matrix * uv + uv_offset; }
 };
 
 /// glTF 2.0 metallic-roughness with transmission, ior, specular, volume and emissive_strength; textures modulate
 /// factors.
 struct Material {
     std::string name;
-    glm::vec3 base_color{1};         ///< linear, [0, 1]
-    float alpha = 1;                 ///< base colour alpha, [0, 1]
-    float alpha_cutoff = 0;          ///< less alpha than this is a hole (AlphaTest); 0: opaque, whatever the alpha
-    int base_color_texture = -1;     ///< index into Scene::textures, -1: none
-    float metallic = 0;              ///< [0, 1]
-    float roughness = 1;             ///< perceptual, [0, 1]; GGX alpha is its square
+    glm::vec3 base_color{1};             ///< linear, [0, 1]
+    float alpha = 1;                     ///< base colour alpha, [0, 1]
+    float alpha_cutoff = 0;              ///< less alpha than this is a hole (AlphaTest); 0: opaque, whatever the alpha
+    MaterialTexture base_color_texture;  ///< sRGB; its alpha times `alpha`
+    MaterialTexture emissive_texture;    ///< sRGB
+    MaterialTexture metallic_texture, roughness_texture, transmission_texture, thickness_texture;  ///< one channel each
+    MaterialTexture specular_texture;                                                              ///< one channel
+    MaterialTexture specular_color_texture;                                                        ///< sRGB
+    MaterialTexture normal_texture;     ///< tangent space, red along the tangent, green along the bitangent
+    MaterialTexture occlusion_texture;  ///< one channel; 0: no light of the sky arrives
+    float normal_scale = 1;             ///< of the normal texture's red and green
+    float occlusion_strength = 1;       ///< [0, 1]
+    float metallic = 0;                 ///< [0, 1]
+    float roughness = 1;                ///< perceptual, [0, 1]; GGX alpha is its square
     glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
     float transmission = 0;          ///< share of the light that is not reflected and passes through, [0, 1]
     float ior = 1.5f;                ///< index of refraction, ≥ 1; 0: infinite, all light is reflected
@@ -51,6 +74,13 @@ struct Material {
     bool double_sided = true;  ///< both sides are shown, where the file says nothing else; see is_single_sided()
 };
 
+/// All textures of a material, in the order of the shaders' TEXTURE_* (common/material.h).
+inline constexpr std::array<MaterialTexture Material::*, 10> material_textures = {
+    &Material::base_color_texture,    &Material::emissive_texture,     &Material::metallic_texture,
+    &Material::roughness_texture,     &Material::transmission_texture, &Material::thickness_texture,
+    &Material::normal_texture,        &Material::occlusion_texture,    &Material::specular_texture,
+    &Material::specular_color_texture};
+
 /// Joints of a skin that pull at a vertex, and how much; the weights sum to 1, or all are 0 (the vertex follows its
 /// node).
 struct JointWeights {
@@ -61,15 +91,19 @@ struct JointWeights {
 
 /// A shape that a primitive can take on, as differences to its own.
 struct MorphTarget {
-    std::vector<glm::vec3> positions, normals;  ///< one per vertex, or empty: no difference
+    std::vector<glm::vec3> positions, normals, tangents;  ///< one per vertex, or empty: no difference
 };
 
-/// Triangles of one material. `positions`, `normals`, `uvs`, `colors` are per vertex; `uvs` and `colors` may be empty.
+/// Triangles of one material. Lists are per vertex; all but `positions` and `normals` may be empty.
 struct Primitive {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< unit length, same count as positions
-    std::vector<glm::vec2> uvs;      ///< texture coordinates of the base colour (the set and transform already applied)
-    std::vector<glm::vec4> colors;   ///< linear vertex colour that multiplies the base colour
+    std::vector<glm::vec3> normals;                ///< unit length, same count as positions
+    std::vector<glm::vec2> uvs;                    ///< the first set of texture coordinates
+    std::vector<std::vector<glm::vec2>> more_uvs;  ///< sets 1, 2, …, each empty or per vertex
+    /// Unit tangents of the normal texture (x, y, z), and the side of the bitangent: w · cross(normal, tangent) points
+    /// to the image's first row. w = 0: none is known, the normal stays as it is. See make_tangents().
+    std::vector<glm::vec4> tangents;
+    std::vector<glm::vec4> colors;     ///< linear vertex colour that multiplies the base colour
     std::vector<JointWeights> joints;  ///< one per vertex; empty: no skin moves it
     std::vector<MorphTarget> targets;
     /// Makes the targets of a primitive that leaves them for later, since a still picture has no use for them and they
@@ -199,14 +233,18 @@ struct Geometry {
     };
 
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< one per position, unit
-    std::vector<glm::vec2> uvs;      ///< one per position (0 where the file has none)
-    std::vector<glm::vec4> colors;   ///< one per position, or empty if no primitive has colours
+    std::vector<glm::vec3> normals;                ///< one per position, unit
+    std::vector<glm::vec2> uvs;                    ///< one per position (0 where the file has none)
+    std::vector<std::vector<glm::vec2>> more_uvs;  ///< the same of sets 1, 2, …
+    std::vector<glm::vec4> tangents;  ///< as Primitive::tangents, one per position, or empty if no primitive has any
+    std::vector<glm::vec4> colors;    ///< one per position, or empty if no primitive has colours
     std::vector<glm::uvec3> triangles;
     std::vector<uint32_t> materials;  ///< one per triangle
-    std::vector<Object> objects;      ///< ascending, without gaps; together all triangles
-    glm::vec3 lower{0}, upper{0};     ///< bounds of all referenced positions; lower > upper: no triangle
-    uint32_t zero_area = 0;           ///< triangles without area (kept; they can never be hit)
+
+    const std::vector<glm::vec2>& uv_set(uint32_t set) const { return set == 0 ? uvs : more_uvs[set - 1]; }
+    std::vector<Object> objects;   ///< ascending, without gaps; together all triangles
+    glm::vec3 lower{0}, upper{0};  ///< bounds of all referenced positions; lower > upper: no triangle
+    uint32_t zero_area = 0;        ///< triangles without area (kept; they can never be hit)
 };
 
 /// World-space triangles of the whole scene at rest (see Geometry). Throws Error when there is no triangle, naming the

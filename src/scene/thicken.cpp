@@ -75,11 +75,14 @@ class Thickener {
         gather(out.positions);
         for (size_t i = 0; i < out.positions.size(); ++i) out.positions[i] += radius_ * normals_[i];
         out.normals = std::move(normals_);
+        out.tangents.clear();
         gather(out.uvs);
+        for (std::vector<glm::vec2>& set : out.more_uvs) gather(set);
         gather(out.colors);
         gather(out.joints);
         for (MorphTarget& target : out.targets) {
             gather(target.positions);
+            target.tangents.clear();
             target.normals.clear();  // what stands around a point does not turn with it
         }
         out.triangles = std::move(triangles_);

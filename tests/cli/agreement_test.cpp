@@ -1,5 +1,10 @@
 // The method's pictures against the reference's: the numbers to reach (docs/accuracy.md), at a size that a test can
 // afford.
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <random>
+
 #include "cli/program_fixture.h"
 #include "image/image.h"
 
@@ -36,9 +41,96 @@ class Agreement : public ProgramTest, public testing::WithParamInterface<SceneCa
     }
 };
 
+/// A ball of glass and one of rough metal over a floor, all that textures can change textured, by images that change
+/// from texel to texel.
+std::string all_textures(const std::function<std::string(const std::string&)>& out) {
+    std::mt19937 random(3);
+    for (const char* name : {"color.png", "data.png", "normal.png"}) {
+        std::vector<uint32_t> texels(64);
+        for (uint32_t& texel : texels) {
+            uint32_t c[3];
+            for (uint32_t& channel : c) channel = random() >> 24;
+            if (name[0] == 'n') c[0] = 96 + c[0] / 4, c[1] = 96 + c[1] / 4, c[2] = 240;
+            texel = 0xFF000000u | c[0] | c[1] << 8 | c[2] << 16;
+        }
+        write_png(out(name), {8, 8, texels});
+    }
+    std::string bytes;
+    const auto put = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    constexpr int rings = 24, sectors = 48;
+    for (int pass = 0; pass < 3; pass++)  // positions (which are the normals), then two sets of coordinates
+        for (int i = 0; i <= rings; i++)
+            for (int k = 0; k <= sectors; k++) {
+                const double theta = 3.14159265 * i / rings, phi = 6.2831853 * k / sectors;
+                if (pass == 0) {
+                    put(float(std::sin(theta) * std::sin(phi)));
+                    put(float(std::cos(theta)));
+                    put(float(std::sin(theta) * std::cos(phi)));
+                } else {
+                    put(float(pass == 1 ? 2.0 * k / sectors : 1.7 * i / rings));
+                    put(float(pass == 1 ? 1.0 * i / rings : 3.0 * k / sectors));
+                }
+            }
+    const size_t vertices = size_t(rings + 1) * (sectors + 1), corners = size_t(rings) * sectors * 6;
+    for (uint32_t i = 0; i < rings; i++)
+        for (uint32_t k = 0; k < sectors; k++) {
+            const uint32_t a = i * (sectors + 1) + k, b = a + sectors + 1;
+            for (const uint32_t corner : {a, b, b + 1, a, b + 1, a + 1}) put(corner);
+        }
+    std::ofstream(out("ball.bin"), std::ios::binary) << bytes;
+    nlohmann::json gltf = nlohmann::json::parse(R"({"asset": {"version": "2.0"}, "scene": 0,
+        "images": [{"uri": "color.png"}, {"uri": "data.png"}, {"uri": "normal.png"}],
+        "textures": [{"source": 0}, {"source": 1}, {"source": 2}, {"source": 0, "sampler": 0}],
+        "samplers": [{"wrapS": 33648, "wrapT": 33071}],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2}]}},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "nodes": [{"mesh": 0, "translation": [-1.2, 0, 0]}, {"mesh": 1, "translation": [1.2, 0, 0]},
+                  {"mesh": 2, "translation": [0, -1.1, 0], "scale": [4, 0.1, -4]},
+                  {"rotation": [-0.5, 0.3, 0, 0.81], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "materials": [
+            {"pbrMetallicRoughness": {"baseColorTexture": {"index": 3}, "metallicFactor": 0.7, "roughnessFactor": 0.6,
+                 "metallicRoughnessTexture": {"index": 1, "texCoord": 1}},
+             "normalTexture": {"index": 2, "scale": 0.4}, "occlusionTexture": {"index": 1, "strength": 0.7},
+             "emissiveTexture": {"index": 0, "texCoord": 1}, "emissiveFactor": [0.2, 0.1, 0.1]},
+            {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+             "normalTexture": {"index": 2, "scale": 0.1},
+             "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1,
+                                "transmissionTexture": {"index": 1, "texCoord": 1}},
+                            "KHR_materials_volume": {"thicknessFactor": 1, "thicknessTexture": {"index": 1},
+                                "attenuationColor": [0.5, 0.8, 0.9], "attenuationDistance": 1},
+                            "KHR_materials_specular": {"specularFactor": 0.9, "specularTexture": {"index": 1},
+                                "specularColorTexture": {"index": 0}}}},
+            {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.3,
+                 "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+                     {"scale": [3, 2], "rotation": 0.4, "offset": [0.1, 0.2]}}}},
+             "normalTexture": {"index": 2, "scale": 0.2, "texCoord": 1}}]})");
+    gltf["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
+    gltf["buffers"] = {{{"uri", "ball.bin"}, {"byteLength", bytes.size()}}};
+    const size_t sizes[] = {12 * vertices, 8 * vertices, 8 * vertices, 4 * corners};
+    for (size_t i = 0, at = 0; i < 4; at += sizes[i++]) {
+        gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", sizes[i]}});
+        gltf["accessors"].push_back({{"bufferView", i},
+                                     {"componentType", i == 3 ? 5125 : 5126},
+                                     {"count", i == 3 ? corners : vertices},
+                                     {"type", i == 0   ? "VEC3"
+                                              : i == 3 ? "SCALAR"
+                                                       : "VEC2"}});
+    }
+    for (int material : {0, 1, 2})
+        gltf["meshes"].push_back(
+            {{"primitives",
+              {{{"attributes", {{"POSITION", 0}, {"NORMAL", 0}, {"TEXCOORD_0", 1}, {"TEXCOORD_1", 2}}},
+                {"indices", 3},
+                {"material", material}}}}});
+    std::ofstream(out("all.gltf")) << gltf;
+    return out("all.gltf");
+}
+
 TEST_P(Agreement, WithTheReference) {
     std::vector<std::string> words = GetParam().words;
-    if (!words[0].starts_with("builtin:")) {
+    if (words[0] == "all textures") {
+        words[0] = all_textures([&](const std::string& name) { return out(name); });
+    } else if (!words[0].starts_with("builtin:")) {
         words[0] = PEELRAY_MODELS "/" + words[0];
         if (!std::filesystem::exists(words[0])) GTEST_SKIP() << "the test models are not here: " << words[0];
         words[0] = with_textures(words[0]);
@@ -75,6 +167,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
                     SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
                     SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
+                    SceneCase{"textures", {"all textures", "--ldc", "512"}},
+                    SceneCase{"textures_samples", {"all textures", "--ldc", "512", "--spp", "4"}},
                     SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}}),
     name_of);
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,

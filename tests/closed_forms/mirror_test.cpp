@@ -1,6 +1,8 @@
 // A plane mirror shows the mirrored scene; two of them show as many images as there are bounces.
 #include <pictures.h>
 
+#include "scene/tangents.h"
+
 namespace peelray {
 namespace {
 
@@ -33,10 +35,19 @@ Stage world(bool other) {
     add(box({-0.2f, 0.9f, 3.0f}, {0.6f, 1.2f, 3.3f}), unlit({0.1f, 0.2f, 0.9f}));
     add(parallelogram({-1.4f, 0.7f, 3.4f}, {0.9f, 0.1f, 0}, {0.1f, 0.8f, 0}), unlit({1, 1, 1}));
     stage.scene.materials.back().base_color_texture = 0;
+    // Everything from textures: what it emits and how it is lit.
+    Material full = lambert({0.8f, 0.9f, 1});
+    full.ior = 1.5f;
+    full.emissive = glm::vec3(0.3f);
+    full.base_color_texture = full.emissive_texture = full.normal_texture = full.roughness_texture =
+        full.occlusion_texture = 0;
+    full.roughness_texture.channel = 2;
+    add(parallelogram({-0.9f, -0.8f, 3.3f}, {0.1f, 0.6f, -0.2f}, {0.8f, 0, 0.1f}), full);
     add(sphere({0.1f, -0.4f, 2.6f}, 0.5f, 16), lambert({0.8f, 0.7f, 0.5f}));
     add(parallelogram({-3, -1, 4}, {6, 0, 0}, {0, 0, -3.5f}), lambert({0.6f, 0.6f, 0.7f}));
     add(parallelogram({-3, -1, 4}, {0, 4, 0}, {6, 0, 0}), lambert({0.7f, 0.5f, 0.6f}));
     stage.scene.textures.push_back(letter());
+    complete_tangents(stage.scene);
     stage.lamp({1.5f, 2, other ? -1.5f : 1.5f}, {12, 11, 10});
     return stage;
 }

@@ -594,10 +594,113 @@ TEST(Gltf, BaseColorTextureWithTransformAndSampler) {
     EXPECT_EQ(texture.wrap_v, Texture::Wrap::mirror);
     EXPECT_TRUE(texture.nearest);
     const Primitive& p = first_primitive(scene);
-    const glm::vec2 uv =
-        p.uvs.at(p.triangles[0].y);  // (1, 0): scaled to (2, 0), turned counter-clockwise in an image whose v runs down
+    EXPECT_EQ(p.uvs.at(p.triangles[0].y), glm::vec2(1, 0));
+    EXPECT_TRUE(p.more_uvs.empty());  // the first set that is used, not the file's first
+    const MaterialTexture& use = scene.materials[0].base_color_texture;
+    EXPECT_EQ(use.uv_set, 0u);
+    // Scaled to (2, 0), turned counter-clockwise in an image whose v runs down.
+    const glm::vec2 uv = use.place({1, 0});
     EXPECT_NEAR(uv.x, 10, 1e-4);
     EXPECT_NEAR(uv.y, 18, 1e-4);
+}
+
+TEST(Gltf, EveryTextureOfAMaterial) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["images"] = {{{"uri", "data:image/png;base64," + base64(tiny_png())}}};
+    gltf["samplers"] = {{{"wrapS", 33071}}};
+    gltf["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{
+        "pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 0.25,
+            "baseColorTexture": {"index": 0, "texCoord": 2}, "metallicRoughnessTexture": {"index": 0}},
+        "normalTexture": {"index": 1, "texCoord": 2, "scale": -0.5},
+        "occlusionTexture": {"index": 1, "strength": 0.75,
+            "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.25], "scale": [2, 4]}}},
+        "emissiveTexture": {"index": 1, "texCoord": 5}, "emissiveFactor": [1, 0.5, 0.25],
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.75, "transmissionTexture": {"index": 1,
+                           "extensions": {"KHR_texture_transform": {"texCoord": 2}}}},
+                       "KHR_materials_volume": {"thicknessFactor": 2, "thicknessTexture": {"index": 0}}}}])");
+    primitive(gltf)["material"] = 0;
+    for (const char* set : {"TEXCOORD_0", "TEXCOORD_2"})
+        primitive(gltf)["attributes"][set] =
+            add_accessor(gltf, pack<float>({0, 1, set[9] == '2' ? 3.f : 1.f, 1, 1, 0, 0, 0}), 5126, "VEC2", 4);
+    const Scene scene = load(folder, gltf);
+    const Material& m = scene.materials.at(0);
+    ASSERT_EQ(scene.textures.size(), 2u);  // one image, two samplers
+    const Primitive& p = first_primitive(scene);
+    ASSERT_EQ(p.more_uvs.size(), 2u);  // sets 2, 0, 5 in the order of their use; there is no set 5
+    EXPECT_EQ(p.uvs.at(p.triangles[0].y), glm::vec2(3, 1));
+    EXPECT_EQ(p.more_uvs[0].at(p.triangles[0].y), glm::vec2(1, 1));
+    EXPECT_TRUE(p.more_uvs[1].empty());
+    EXPECT_TRUE(has_note(scene, "1 primitive without the texture coordinates"));
+    const auto expect_use = [](const MaterialTexture& use, int texture, uint32_t set, uint32_t channel) {
+        EXPECT_EQ(use.texture, texture);
+        EXPECT_EQ(use.uv_set, set);
+        EXPECT_EQ(use.channel, channel);
+    };
+    expect_use(m.base_color_texture, 0, 0, 0);
+    expect_use(m.roughness_texture, 0, 1, 1);
+    expect_use(m.metallic_texture, 0, 1, 2);
+    expect_use(m.emissive_texture, 1, 2, 0);
+    expect_use(m.normal_texture, 1, 0, 0);
+    expect_use(m.occlusion_texture, 1, 1, 0);
+    expect_use(m.transmission_texture, 1, 0, 0);
+    expect_use(m.thickness_texture, 0, 1, 1);
+    EXPECT_EQ(m.occlusion_texture.place({1, 1}), glm::vec2(2.5f, 4.25f));
+    EXPECT_EQ(m.metallic, 0.5f);
+    EXPECT_EQ(m.roughness, 0.25f);
+    EXPECT_EQ(m.normal_scale, -0.5f);
+    EXPECT_EQ(m.occlusion_strength, 0.75f);
+    EXPECT_EQ(p.tangents.size(), p.positions.size());  // made, since the file has none
+}
+
+TEST(Gltf, TangentsAreReadWhereTheyAreRight) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["images"] = {{{"uri", "data:image/png;base64," + base64(tiny_png())}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{"normalTexture": {"index": 0}}])");
+    primitive(gltf)["material"] = 0;
+    primitive(gltf)["attributes"]["NORMAL"] =
+        add_accessor(gltf, pack<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}), 5126, "VEC3", 4);
+    primitive(gltf)["attributes"]["TEXCOORD_0"] =
+        add_accessor(gltf, pack<float>({0, 1, 1, 1, 1, 0, 0, 0}), 5126, "VEC2", 4);
+    json right = gltf;
+    primitive(right)["attributes"]["TANGENT"] =
+        add_accessor(right, pack<float>({0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1}), 5126, "VEC4", 4);
+    const Scene given = load(folder, right);
+    EXPECT_EQ(first_primitive(given).tangents, std::vector<glm::vec4>(4, glm::vec4(0, 1, 0, -1)));
+    for (const float bad : {0.f, 0.5f, NAN}) {
+        json wrong = gltf;
+        primitive(wrong)["attributes"]["TANGENT"] =
+            add_accessor(wrong, pack<float>({0, 1, 0, -1, 0, 1, 0, bad, 0, 1, 0, 1, 0, 1, 0, 1}), 5126, "VEC4", 4);
+        const Scene scene = load(folder, wrong);
+        EXPECT_TRUE(has_note(scene, "1 primitive whose tangents have no direction or no side")) << bad;
+        for (const glm::vec4& t : first_primitive(scene).tangents) EXPECT_NEAR(t.x, 1, 1e-6) << bad;
+    }
+    primitive(gltf)["attributes"].erase("NORMAL");  // flat normals: the file's tangents would not belong to them
+    primitive(gltf)["attributes"]["TANGENT"] = primitive(right)["attributes"]["TANGENT"];
+    right = gltf;
+    primitive(right)["attributes"]["TANGENT"] =
+        add_accessor(right, pack<float>({0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}), 5126, "VEC4", 4);
+    const Scene flat = load(folder, right);
+    EXPECT_FALSE(first_primitive(flat).tangents.empty());
+    for (const glm::vec4& t : first_primitive(flat).tangents) EXPECT_NEAR(t.x, 1, 1e-6);
+}
+
+TEST(Gltf, SixteenBitImagesKeepTheirDepth) {
+    // 2×1 texels of 16 bits, RGB: (0x1234, 0x5678, 0x9ABC) and (0xFFFF, 0, 1).
+    const TempFolder folder;
+    json gltf = square();
+    gltf["images"] = {{{"uri",
+                        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR4nGMQMgmrmLXn/"
+                        "38GBgZGAB+fBGrbFwuVAAAAAElFTkSuQmCC"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{"occlusionTexture": {"index": 0}}])");
+    const Scene scene = load(folder, gltf);
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_TRUE(scene.textures[0].texels.empty());
+    EXPECT_EQ(scene.textures[0].deep_texels, (std::vector<uint64_t>{0xFFFF9ABC56781234ull, 0xFFFF00010000FFFFull}));
 }
 
 TEST(Gltf, VertexColors) {

@@ -27,7 +27,8 @@ Material material_of(const Scene& scene) {
 /// The square's texture coordinates, lower left and upper right, counted from the top.
 std::pair<glm::vec2, glm::vec2> corners_of(const Scene& scene) {
     const Primitive& p = scene.meshes[0].primitives[0];
-    return {p.uvs.at(p.triangles[0].x), p.uvs.at(p.triangles[0].z)};
+    const MaterialTexture& use = scene.materials.at(p.material).base_color_texture;
+    return {use.place(p.uvs.at(p.triangles[0].x)), use.place(p.uvs.at(p.triangles[0].z))};
 }
 
 void expect_color(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
@@ -177,17 +178,39 @@ TEST(Mtl, MissingImagesAreOneNote) {
 
 TEST(Mtl, PhysicallyBasedAndEmissiveMaps) {
     const TempFolder folder;
-    folder.write("red green.png", tiny_png());  // mean of red: one half
-    const Scene scene = load_with(
-        folder, "newmtl m\nPr 0.5\nmap_Pr red green.png\nmap_Pm red green.png\nKe 2 2 2\nmap_Ke red green.png\n");
-    EXPECT_FLOAT_EQ(material_of(scene).roughness, 0.25f);
-    EXPECT_FLOAT_EQ(material_of(scene).metallic, 0.5f);
-    expect_color(material_of(scene).emissive, {1, 1, 0});
-    EXPECT_EQ(scene.notes.size(), 3u);
-    for (const std::string& note : scene.notes) EXPECT_MENTIONS(note, "replaced by its mean");
-    const Scene bump = load_with(folder, "newmtl m\nbump -bm 0.3 b.png\nmap_Bump b.png\nnorm b.png\n");
+    folder.write("red green.png", tiny_png());
+    const Scene scene = load_with(folder,
+                                  "newmtl m\nPr 0.5\nmap_Pr -imfchan g -s 2 3 1 red green.png\nmap_Pm -imfchan r red "
+                                  "green.png\nKe 2 2 3\nmap_Ke -o 0.5 red green.png\n");
+    const Material& m = material_of(scene);
+    EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
+    ASSERT_EQ(scene.textures.size(), 1u);  // one image, four uses
+    EXPECT_EQ(m.roughness, 0.5f);
+    EXPECT_EQ(m.roughness_texture.texture, 0);
+    EXPECT_EQ(m.roughness_texture.channel, 1u);
+    EXPECT_EQ(m.roughness_texture.place({1, 0}), glm::vec2(2, -2));
+    EXPECT_EQ(m.metallic, 1);
+    EXPECT_EQ(m.metallic_texture.texture, 0);
+    EXPECT_EQ(m.metallic_texture.channel, 0u);
+    EXPECT_EQ(m.metallic_texture.place({1, 0}), glm::vec2(1, 0));
+    EXPECT_EQ(m.emissive, glm::vec3(2, 2, 3));
+    EXPECT_EQ(m.emissive_texture.texture, 0);
+    EXPECT_EQ(m.emissive_texture.place({0, 0}), glm::vec2(0.5f, 0));
+    EXPECT_FALSE(m.base_color_texture);
+    // Without Ke the texture counts as it is; where its image is missing, so does Ke.
+    EXPECT_EQ(material_of(load_with(folder, "newmtl m\nmap_Ke red green.png\n")).emissive, glm::vec3(1));
+    EXPECT_EQ(material_of(load_with(folder, "newmtl m\nmap_Ke gone.png\n")).emissive, glm::vec3(0));
+    // Normals in tangent space are read, heights are not.
+    const Scene normals = load_with(folder, "newmtl m\nnorm -bm 0.25 -clamp on red green.png\n");
+    EXPECT_TRUE(normals.notes.empty()) << normals.notes[0];
+    EXPECT_TRUE(material_of(normals).normal_texture);
+    EXPECT_EQ(material_of(normals).normal_scale, 0.25f);
+    EXPECT_EQ(normals.textures.at(0).wrap_v, Texture::Wrap::clamp);
+    for (const glm::vec4& t : normals.meshes.at(0).primitives.at(0).tangents) EXPECT_EQ(std::abs(t.w), 1);
+    EXPECT_FALSE(normals.meshes.at(0).primitives.at(0).tangents.empty());
+    const Scene bump = load_with(folder, "newmtl m\nbump -bm 0.3 b.png\nmap_Bump b.png\n");
     ASSERT_EQ(bump.notes.size(), 1u);
-    EXPECT_MENTIONS(bump.notes[0], "3 normal and bump maps ignored");
+    EXPECT_MENTIONS(bump.notes[0], "2 bump maps (map_bump), which hold heights, ignored");
     for (const char* key : {"Ka 1 1 1", "map_Ks a.png", "map_Ns a.png", "disp a.png", "decal a.png",
                             "refl -type sphere a.png", "Ps 0.5", "Pc 1", "aniso 1", "sharpness 60", "map_aat on"}) {
         const Scene noted = load_with(folder, "newmtl m\n" + std::string(key) + "\n");
@@ -214,7 +237,7 @@ TEST(Mtl, DissolveMapsCutHoles) {
     const Scene scene = load_with(folder, "newmtl m\nKd 1 1 1\nmap_d red green.png\nmap_Kd red green.png\n");
     const Material m = material_of(scene);
     EXPECT_EQ(m.alpha_cutoff, 0.5f);
-    const Texture& cut = scene.textures.at(size_t(m.base_color_texture));
+    const Texture& cut = scene.textures.at(size_t(m.base_color_texture.texture));
     ASSERT_EQ(cut.texels.size(), 2u);
     EXPECT_LT(cut.texels[0] >> 24, 128u);
     EXPECT_GE(cut.texels[1] >> 24, 128u);
@@ -223,7 +246,7 @@ TEST(Mtl, DissolveMapsCutHoles) {
     EXPECT_MENTIONS(scene.notes[0], "map_d");
     // Another channel: red is solid, green is not; no colour map: white, and the map's own transform.
     const Scene other = load_with(folder, "newmtl m\nmap_d -imfchan r -s 2 2 1 red green.png\n");
-    const Texture& white = other.textures.at(size_t(material_of(other).base_color_texture));
+    const Texture& white = other.textures.at(size_t(material_of(other).base_color_texture.texture));
     EXPECT_EQ(white.texels, (std::vector<uint32_t>{0xFFFFFFFFu, 0x00FFFFFFu}));
     EXPECT_EQ(corners_of(other).second, glm::vec2(2, -1));
     // The blue channel is black all over: wholly dissolved. Its alpha is 255 all over: not at all.

@@ -8,6 +8,7 @@
 #include "motion/animation.h"
 #include "motion/bounds.h"
 #include "moving.h"
+#include "scene/tangents.h"
 
 namespace peelray {
 namespace {
@@ -222,6 +223,44 @@ TEST_F(MovingTest, HolesMoveWithWhatDeforms) {
         Renderer opaque(device(), still, moment, assemble(still, moment, motion_of(still, "")), sky);
         EXPECT_GT(tally(moved, opaque.render(reference), 5e-3).wrong, 500u) << "the holes are seen";
     }
+}
+
+TEST_F(MovingTest, BentNormalsMoveWithWhatDeforms) {
+    Stage stage;
+    stage.scene = three_balls();
+    Scene& scene = stage.scene;
+    Texture waves;  // normals of all directions within 40 degrees
+    waves.width = waves.height = 16;
+    for (int i = 0; i < 256; i++) {
+        const double a = 0.6 * std::sin(i * 0.7), b = 0.6 * std::sin(i * 1.9);
+        const vec3 n = glm::normalize(vec3(float(a), float(b), 1)) * 127.5f + 127.5f;
+        waves.texels.push_back(0xff000000u | uint32_t(n.x) | uint32_t(n.y) << 8 | uint32_t(n.z) << 16);
+    }
+    scene.textures.push_back(waves);
+    for (Material& material : scene.materials) material.normal_texture = int(scene.textures.size()) - 1;
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives) {
+            primitive.uvs.clear();
+            for (const vec3& p : primitive.positions) primitive.uvs.emplace_back(p.x + 0.3f * p.z, p.y);
+        }
+    complete_tangents(scene);
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives)
+            for (MorphTarget& target : primitive.targets)
+                target.tangents.assign(primitive.positions.size(), vec3(0.2f));
+    const auto renderer = renderer_in(scene, "0", 0, sky);
+    RenderSettings settings = small(kUsualView);
+    settings.width = settings.height = 96;
+    const RenderResult moved = at(*renderer, scene, "0", 1.2, settings);
+    Scene still = scene;
+    still.animations.clear();
+    const Moment moment = moment_of(scene, "0", 1.2);
+    settings.bounds = bounds(scene, moment);
+    Renderer other(device(), still, moment, assemble(still, moment, motion_of(still, "")), sky);
+    tally(moved, other.render(settings), 5e-3).expect(0.005, 96 * 96);
+    for (Material& material : still.materials) material.normal_texture = {};
+    Renderer smooth(device(), still, moment, assemble(still, moment, motion_of(still, "")), sky);
+    EXPECT_GT(tally(moved, smooth.render(settings), 5e-3).wrong, 1000u) << "the bent normals are seen";
 }
 
 TEST_F(MovingTest, HundredsOfFramesLoseNothingAndKeepNoMemory) {

@@ -1,0 +1,153 @@
+// Materials at a hit: nothing else reads their records. Include after what it reads: triangles and the buffers of
+// base_color_buffers.glsl. Which sides of a triangle are shown stands apart (sidedness.glsl), for shaders that read no textures.
+#ifndef PEELRAY_MATERIAL_GLSL
+#define PEELRAY_MATERIAL_GLSL
+
+#include "common/material.h"
+
+#include "common/sidedness.glsl"
+#include "common/textures.glsl"
+#include "path/shading_numbers.h"
+
+// --- Opacity: where a triangle has a surface (the alpha test of masked materials) ---
+
+/// May the triangle have holes?
+bool alphaMasked(uint triangle) { return materials[triangle_materials[triangle]].alpha_cutoff > 0.0; }
+
+/// Is there a surface at the point with these weights of the triangle's second and third corner?
+bool alphaPresent(uint triangle, vec2 weights) {
+    const uint index = triangle_materials[triangle];
+    const float cutoff = materials[index].alpha_cutoff;
+    if (cutoff <= 0.0) return true;
+    const uvec3 corners = triangles[triangle];
+    float alpha = materials[index].alpha;
+    if ((materials[index].flags & MATERIAL_COLORED) != 0u) {
+        const float a = colors[corners.x].a;
+        alpha *= a + (colors[corners.y].a - a) * weights.x + (colors[corners.z].a - a) * weights.y;
+    }
+    const int texture_index = materials[index].textures[TEXTURE_BASE_COLOR];
+    if (texture_index >= 0) {
+        const GpuTexture info = texture_infos[texture_index];
+        const vec2 a = uvs[corners.x + info.first_uv], b = uvs[corners.y + info.first_uv], c = uvs[corners.z + info.first_uv];
+        alpha *= sampleMoved(info, a + (b - a) * weights.x + (c - a) * weights.y).a;
+    }
+    return alpha >= cutoff - ALPHA_ROUNDING;
+}
+
+/// May light pass through the triangle somewhere?
+bool mayTransmit(uint triangle) {
+    const uint index = triangle_materials[triangle];
+    return materials[index].transmission > 0.0 && (materials[index].metallic < 1.0 || materials[index].textures[TEXTURE_METALLIC] >= 0);
+}
+
+// --- What shading asks for ---
+
+#ifdef MATERIAL_EVALUATION
+// The scene has textures other than of the base colour. Without them their values are constants, and a material is
+// read again wherever it is needed rather than kept.
+layout(constant_id = 20) const bool textured = false;
+
+/// A material at a point; its base colour is the surface's.
+struct Material {
+    float metallic;
+    vec3 emissive;
+    float roughness;
+    vec3 absorption;  ///< per world unit inside the volume; 0: none
+    float transmission;
+    float ior;
+    float thickness;
+    float occlusion;  ///< share of the sky's diffuse light that arrives
+    vec3 f0;          ///< see GpuMaterial
+    float f90;
+    vec3 fresnel_fit;
+    uint flags;  ///< MATERIAL_*
+};
+/// What a point's textures give; the record's factors times this.
+struct TextureFactors {
+    vec3 emissive, specular_color;
+    float metallic, roughness, transmission, thickness, occlusion, specular;
+};
+
+/// Several uses that follow each other are often one image.
+struct LastTexture {
+    int index;
+    vec4 value;
+};
+
+/// The single number that a use reads; 1 without a texture.
+float textureNumber(uint material, int use, uvec3 corners, vec3 weights, inout LastTexture last) {
+    const int index = materials[material].textures[use];
+    if (index < 0) return 1.0;
+    if (index != last.index) last = LastTexture(index, textureAt(index, corners, weights));
+    return last.value[materials[material].channels >> uint(2 * use) & 3u];
+}
+
+/// With the vertices' own colours.
+vec3 baseColor(uint material, uvec3 corners, vec3 weights) {
+    vec3 color = materials[material].base_color;
+    if ((materials[material].flags & MATERIAL_COLORED) != 0u)
+        color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
+    const int index = materials[material].textures[TEXTURE_BASE_COLOR];
+    return index >= 0 ? color * textureAt(index, corners, weights).rgb : color;
+}
+
+/// All textures of a material but the base colour's and the normal's.
+TextureFactors textureFactors(uint material, uvec3 corners, vec3 weights) {
+    TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+    if (!textured || (materials[material].flags & MATERIAL_TEXTURED) == 0u) return f;
+    const int emission = materials[material].textures[TEXTURE_EMISSIVE];
+    if (emission >= 0) f.emissive = textureAt(emission, corners, weights).rgb;
+    const int specular = materials[material].textures[TEXTURE_SPECULAR_COLOR];
+    if (specular >= 0) f.specular_color = textureAt(specular, corners, weights).rgb;
+    LastTexture last = LastTexture(-1, vec4(1));
+    f.metallic = textureNumber(material, TEXTURE_METALLIC, corners, weights, last);
+    f.roughness = textureNumber(material, TEXTURE_ROUGHNESS, corners, weights, last);
+    f.occlusion = textureNumber(material, TEXTURE_OCCLUSION, corners, weights, last);
+    f.transmission = textureNumber(material, TEXTURE_TRANSMISSION, corners, weights, last);
+    f.thickness = textureNumber(material, TEXTURE_THICKNESS, corners, weights, last);
+    f.specular = textureNumber(material, TEXTURE_SPECULAR, corners, weights, last);
+    return f;
+}
+
+/// The material where its textures give these factors.
+Material evaluate(uint material, TextureFactors f) {
+    const GpuMaterial r = materials[material];
+    Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, r.flags);
+    if (textured) {
+        m.metallic *= f.metallic;
+        m.emissive *= f.emissive;
+        m.roughness *= f.roughness;
+        m.transmission *= f.transmission;
+        m.thickness *= f.thickness;
+        if ((m.flags & MATERIAL_SCHLICK) != 0u) {  // KHR_materials_specular
+            m.f90 *= f.specular;
+            m.f0 = min(r.fresnel_fit * f.specular_color, vec3(1)) * m.f90;
+        }
+        m.occlusion += r.occlusion_strength * (f.occlusion - 1.0);
+    }
+    return m;
+}
+
+/// Index of refraction of the volume of a material.
+float materialIndex(uint material) { return materials[material].ior; }
+
+/// Absorption inside the volume of a material.
+vec3 materialAbsorption(uint material) { return materials[material].absorption; }
+
+/// Does the material bend normals?
+bool bendsNormals(uint material) { return textured && materials[material].textures[TEXTURE_NORMAL] >= 0; }
+
+/// A vertex's tangent, and the side of its bitangent.
+vec4 tangentOf(uint material, uint vertex) {
+    const uint at = materials[material].first_tangent + 2u * vertex;
+    return vec4(uvs[at], uvs[at + 1u]);
+}
+
+/// The normal's parts along the tangent, the bitangent and the interpolated normal (glTF 2.0, section 3.9.3).
+vec3 normalParts(uint material, uvec3 corners, vec3 weights) {
+    const float scale = materials[material].normal_scale;
+    return (textureAt(materials[material].textures[TEXTURE_NORMAL], corners, weights).rgb * 2.0 - 1.0) * vec3(scale, scale, 1);
+}
+#endif
+
+#endif
