@@ -151,6 +151,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             out.textured = true;
             if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
         }
+        out.specified |= (m.flags & MATERIAL_SCHLICK) != 0;
         materials.push_back(m);
     }
     out.materials = upload(device, commands, "materials", materials);
