@@ -17,10 +17,13 @@ void set_reflectance(GpuMaterial& m, const Material& material) {
     const double root = (m.ior - 1.0) / (m.ior + 1.0), f0 = infinite ? 1 : root * root;
     m.f0 = glm::min(float(f0) * material.specular_color, glm::vec3(1)) * material.specular;
     m.f90 = material.specular;
-    if (infinite || material.specular != 1 || material.specular_color != glm::vec3(1))
+    if (infinite || material.specular != 1 || material.specular_color != glm::vec3(1)) {
         m.flags |= MATERIAL_SCHLICK;
-    else
-        m.fresnel_fit = fresnel_fit(m.ior);
+    } else {
+        const glm::vec4 fit = fresnel_fit(m.ior);
+        m.f0 = glm::vec3(fit.x);
+        m.fresnel_fit = glm::vec3(fit.y, fit.z, fit.w);
+    }
 }
 
 GpuMaterial gpu_material(const Material& material, bool colored) {
