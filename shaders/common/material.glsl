@@ -29,7 +29,7 @@ bool alphaPresent(uint triangle, vec2 weights) {
     if (texture_index >= 0) {
         const GpuTexture info = texture_infos[texture_index];
         const vec2 a = uvs[corners.x + info.first_uv], b = uvs[corners.y + info.first_uv], c = uvs[corners.z + info.first_uv];
-        alpha *= sampleMoved(info, a + (b - a) * weights.x + (c - a) * weights.y).a;
+        alpha *= sampleLevel(info, movedCoordinates(info, a + (b - a) * weights.x + (c - a) * weights.y), (info.flags & USE_NEAREST) != 0u).a;
     }
     return alpha >= cutoff - ALPHA_ROUNDING;
 }
@@ -46,7 +46,8 @@ bool mayTransmit(uint triangle) {
 // MATERIALS_*: what some material of the scene is. What none is costs nothing: without textures other than of the base
 // colour a material is read again wherever it is needed rather than kept.
 layout(constant_id = 20) const uint material_kinds = 0u;
-const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u;
+const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u,
+           filtered = (material_kinds & MATERIALS_FILTERED) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {
@@ -76,37 +77,37 @@ struct LastTexture {
 };
 
 /// The single number that a use reads; 1 without a texture.
-float textureNumber(uint material, int use, uvec3 corners, vec3 weights, inout LastTexture last) {
+float textureNumber(uint material, int use, TexturePlace place, inout LastTexture last) {
     const int index = materials[material].textures[use];
     if (index < 0) return 1.0;
-    if (index != last.index) last = LastTexture(index, textureAt(index, corners, weights));
+    if (index != last.index) last = LastTexture(index, textureAt(index, place));
     return last.value[materials[material].channels >> uint(2 * use) & 3u];
 }
 
 /// With the vertices' own colours.
-vec3 baseColor(uint material, uvec3 corners, vec3 weights) {
+vec3 baseColor(uint material, TexturePlace place) {
     vec3 color = materials[material].base_color;
     if ((materials[material].flags & MATERIAL_COLORED) != 0u)
-        color *= colors[corners.x].rgb * weights.x + colors[corners.y].rgb * weights.y + colors[corners.z].rgb * weights.z;
+        color *= colors[place.corners.x].rgb * place.weights.x + colors[place.corners.y].rgb * place.weights.y + colors[place.corners.z].rgb * place.weights.z;
     const int index = materials[material].textures[TEXTURE_BASE_COLOR];
-    return index >= 0 ? color * textureAt(index, corners, weights).rgb : color;
+    return index >= 0 ? color * textureAt(index, place).rgb : color;
 }
 
 /// All textures of a material but the base colour's and the normal's.
-TextureFactors textureFactors(uint material, uvec3 corners, vec3 weights) {
+TextureFactors textureFactors(uint material, TexturePlace place) {
     TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
     if (!textured || (materials[material].flags & MATERIAL_TEXTURED) == 0u) return f;
     const int emission = materials[material].textures[TEXTURE_EMISSIVE];
-    if (emission >= 0) f.emissive = textureAt(emission, corners, weights).rgb;
+    if (emission >= 0) f.emissive = textureAt(emission, place).rgb;
     const int specular = materials[material].textures[TEXTURE_SPECULAR_COLOR];
-    if (specular >= 0) f.specular_color = textureAt(specular, corners, weights).rgb;
+    if (specular >= 0) f.specular_color = textureAt(specular, place).rgb;
     LastTexture last = LastTexture(-1, vec4(1));
-    f.metallic = textureNumber(material, TEXTURE_METALLIC, corners, weights, last);
-    f.roughness = textureNumber(material, TEXTURE_ROUGHNESS, corners, weights, last);
-    f.occlusion = textureNumber(material, TEXTURE_OCCLUSION, corners, weights, last);
-    f.transmission = textureNumber(material, TEXTURE_TRANSMISSION, corners, weights, last);
-    f.thickness = textureNumber(material, TEXTURE_THICKNESS, corners, weights, last);
-    f.specular = textureNumber(material, TEXTURE_SPECULAR, corners, weights, last);
+    f.metallic = textureNumber(material, TEXTURE_METALLIC, place, last);
+    f.roughness = textureNumber(material, TEXTURE_ROUGHNESS, place, last);
+    f.occlusion = textureNumber(material, TEXTURE_OCCLUSION, place, last);
+    f.transmission = textureNumber(material, TEXTURE_TRANSMISSION, place, last);
+    f.thickness = textureNumber(material, TEXTURE_THICKNESS, place, last);
+    f.specular = textureNumber(material, TEXTURE_SPECULAR, place, last);
     return f;
 }
 
@@ -146,9 +147,9 @@ vec4 tangentOf(uint material, uint vertex) {
 }
 
 /// The normal's parts along the tangent, the bitangent and the interpolated normal (glTF 2.0, section 3.9.3).
-vec3 normalParts(uint material, uvec3 corners, vec3 weights) {
+vec3 normalParts(uint material, TexturePlace place) {
     const float scale = materials[material].normal_scale;
-    return (textureAt(materials[material].textures[TEXTURE_NORMAL], corners, weights).rgb * 2.0 - 1.0) * vec3(scale, scale, 1);
+    return (textureAt(materials[material].textures[TEXTURE_NORMAL], place).rgb * 2.0 - 1.0) * vec3(scale, scale, 1);
 }
 #endif
 

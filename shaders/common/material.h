@@ -52,6 +52,7 @@ SHARED_SIZE(GpuMaterial, 152);
 /// Of all materials of a scene:
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
 #define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
+#define MATERIALS_FILTERED 4u   // some have textures whose filter depends on how large they are seen
 
 /// A texture as materials use it.
 struct GpuTexture {
@@ -60,15 +61,19 @@ struct GpuTexture {
     uint height;
     uint flags;     ///< wrap u (2 bits: repeat, mirror, clamp), wrap v (2 bits), USE_*
     uint first_uv;  ///< of its set of texture coordinates
+    uint smaller;   ///< first word of levels 1, 2, ..., one after the other; USE_LEVELS
     vec2 u_axis;    ///< coordinates: u times this + v times the next + offset
     vec2 v_axis;
     vec2 uv_offset;
 };
-SHARED_SIZE(GpuTexture, 44);
+SHARED_SIZE(GpuTexture, 48);
 #define USE_NEAREST 16u
 #define USE_DATA 32u   // not encoded as sRGB
 #define USE_DEEP 64u   // 16 bits a channel, two words a texel
 #define USE_MOVED 128u // coordinates are transformed
+#define USE_MIN_NEAREST 256u  // where it is made smaller
+#define USE_LEVELS 512u       // and then the nearest of its levels serves,
+#define USE_BETWEEN 1024u     // or two of them
 
 /// Words of texels lie in the rows of an image of several layers, which no device limits to what a buffer may hold.
 #define TEXEL_ROW_BITS 12u

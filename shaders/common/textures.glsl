@@ -31,12 +31,13 @@ vec4 fetchTexel(GpuTexture info, int x, int y) {
     return (info.flags & USE_DATA) != 0u ? encoded : vec4(srgbToLinear(encoded.rgb), encoded.a);
 }
 
-vec4 sampleTexture(GpuTexture info, vec2 uv) {
+/// One level, bilinear or the nearest texel.
+vec4 sampleLevel(GpuTexture info, vec2 uv, bool nearest) {
     // Whole repeats are dropped first: large coordinates would lose the fraction's bits.
     const vec2 wrapped = uv - 2.0 * floor(uv * 0.5);
     const bool clamped_u = (info.flags & 3u) == 2u, clamped_v = (info.flags >> 2u & 3u) == 2u;
     const vec2 p = vec2(clamped_u ? clamp(uv.x, 0.0, 1.0) : wrapped.x, clamped_v ? clamp(uv.y, 0.0, 1.0) : wrapped.y) * vec2(info.width, info.height);
-    if ((info.flags & USE_NEAREST) != 0u) return fetchTexel(info, int(floor(p.x)), int(floor(p.y)));
+    if (nearest) return fetchTexel(info, int(floor(p.x)), int(floor(p.y)));
     const vec2 q = p - 0.5, f = fract(q);
     const ivec2 i = ivec2(floor(q));
     const vec4 top = mix(fetchTexel(info, i.x, i.y), fetchTexel(info, i.x + 1, i.y), f.x);
@@ -44,17 +45,53 @@ vec4 sampleTexture(GpuTexture info, vec2 uv) {
     return mix(top, bottom, f.y);
 }
 
-/// At coordinates that were interpolated; the texture's own transform comes here.
-vec4 sampleMoved(GpuTexture info, vec2 uv) {
-    if ((info.flags & USE_MOVED) != 0u) uv = info.u_axis * uv.x + info.v_axis * uv.y + info.uv_offset;
-    return sampleTexture(info, uv);
+/// Level `number` as a texture of its own.
+GpuTexture textureLevel(GpuTexture info, uint number) {
+    if (number == 0u) return info;
+    info.offset = info.smaller;
+    for (uint i = 1u;; i++) {
+        info.width = max(info.width >> 1u, 1u);
+        info.height = max(info.height >> 1u, 1u);
+        if (i == number) return info;
+        info.offset += info.width * info.height * ((info.flags & USE_DEEP) != 0u ? 2u : 1u);
+    }
 }
 
-/// At the weights of a triangle's corners.
-vec4 textureAt(int index, uvec3 corners, vec3 weights) {
+/// Filtered for a footprint whose width in texels has the binary logarithm `lod`; at most 0: magnified.
+vec4 sampleTexture(GpuTexture info, vec2 uv, float lod) {
+    if (lod <= 0.0) return sampleLevel(info, uv, (info.flags & USE_NEAREST) != 0u);
+    lod = (info.flags & USE_LEVELS) != 0u ? min(lod, float(findMSB(max(info.width, info.height)))) : 0.0;
+    if ((info.flags & USE_BETWEEN) == 0u) lod = ceil(lod - 0.5);
+    const bool nearest = (info.flags & USE_MIN_NEAREST) != 0u;
+    const uint first = uint(lod);
+    const vec4 value = sampleLevel(textureLevel(info, first), uv, nearest);
+    const float part = lod - float(first);
+    return part > 0.0 ? mix(value, sampleLevel(textureLevel(info, first + 1u), uv, nearest), part) : value;
+}
+
+/// Where the texture's own transform takes coordinates.
+vec2 movedCoordinates(GpuTexture info, vec2 uv) {
+    return (info.flags & USE_MOVED) != 0u ? info.u_axis * uv.x + info.v_axis * uv.y + info.uv_offset : uv;
+}
+
+/// A place in a triangle as textures see it.
+struct TexturePlace {
+    uvec3 corners;
+    vec3 weights;
+    float seen;  ///< area of what the ray stands for, over twice that of the triangle; 0: a point
+};
+
+vec4 textureAt(int index, TexturePlace place) {
     const GpuTexture info = texture_infos[index];
-    corners += info.first_uv;
-    return sampleMoved(info, uvs[corners.x] * weights.x + uvs[corners.y] * weights.y + uvs[corners.z] * weights.z);
+    const uvec3 at = place.corners + info.first_uv;
+    const vec2 a = uvs[at.x], b = uvs[at.y], c = uvs[at.z];
+    float lod = -1.0;
+    if (place.seen > 0.0) {
+        float texels = float(info.width) * float(info.height) * abs(determinant(mat2(b - a, c - a)));
+        if ((info.flags & USE_MOVED) != 0u) texels *= abs(determinant(mat2(info.u_axis, info.v_axis)));
+        lod = 0.5 * log2(max(place.seen * texels, 1e-30));
+    }
+    return sampleTexture(info, movedCoordinates(info, a * place.weights.x + b * place.weights.y + c * place.weights.z), lod);
 }
 
 #endif

@@ -60,11 +60,12 @@ void main() {
         radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
     } else {
         object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
-        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
+        const vec2 cone = coneAt(unpackCone(state.cone), hit.t);
+        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction, cone.x);
         const Material m = materialOf(s);
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front), state, reflection, refraction);
+        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front), state, cone, reflection, refraction);
         radiance += reflection.weight * seen(reflection, m.roughness);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).

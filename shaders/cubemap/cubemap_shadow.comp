@@ -20,6 +20,7 @@ BUFFER(readonly, 18, vec4, split_sum)
 #define SHADOW_DEPTH(index) shadow_depths[index]
 #include "cubemap/cubemap.glsl"
 #include "cubemap/shadow_map.glsl"
+#include "path/cone.glsl"
 #include "path/frame.glsl"
 #include "path/lighting.glsl"
 
@@ -41,7 +42,7 @@ void main() {
     const Hit hit = hits[i];
     if (hit.triangle == NO_TRIANGLE) return;
     const vec3 view = -rays[i].direction;
-    const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), -view);
+    const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), -view, coneAt(frame[0].cone, hit.t).x);
     const Material m = materialOf(s);
     if ((m.flags & MATERIAL_UNLIT) != 0u) return;
     vec3 sum = skyLight(s, m, view);

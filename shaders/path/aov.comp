@@ -13,6 +13,7 @@ BUFFER(readonly, 12, Ray, rays)
 BUFFER(readonly, 13, Hit, hits)
 BUFFER(writeonly, 14, AovSurface, aovs)
 BUFFER(readonly, 15, uint, triangle_ids)
+#include "path/cone.glsl"
 #include "path/frame.glsl"
 #include "view/camera.glsl"
 
@@ -27,7 +28,7 @@ void main() {
     SURFACE_AOVS(AOV_NOTHING)
     const Hit hit = hits[i];
     if (hit.triangle != NO_TRIANGLE) {
-        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), rays[i].direction);
+        const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), rays[i].direction, coneAt(frame[0].cone, hit.t).x);
         record.seen = 1.0;
         record.depth = hit.t;
         record.normal = vec4(s.normal, 0);

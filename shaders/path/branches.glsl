@@ -2,6 +2,7 @@
 #ifndef PEELRAY_BRANCHES_GLSL
 #define PEELRAY_BRANCHES_GLSL
 
+#include "path/cone.glsl"
 #include "path/frame.h"
 #include "path/interface.glsl"
 #include "path/path_params.h"
@@ -13,8 +14,9 @@ struct Branch {
     uint medium;      ///< of the new ray, with RAY_SEES_SUN
     bool traced;      ///< or looked up in a cube map
     float blur;       ///< roughness for the environment, if not traced
+    uint cone;        ///< of the new ray
 };
-const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0);
+const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u);
 
 // Defined by the shader that includes this.
 /// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
@@ -26,8 +28,8 @@ float tracedPart(Material m);
 /// Sets `traced`.
 void decide(inout Branch branch, vec3 path_weight, uint effect);
 
-/// Both branches of a surface, and what it sends by itself.
-vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, out Branch reflection, out Branch refraction) {
+/// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
+vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const Material m = materialOf(s);
     if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
@@ -57,7 +59,8 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ou
         else if (!mirror)
             weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
     }
-    reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0);
+    reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0,
+                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u);
     decide(reflection, state.weight, EFFECT_REFLECTION);
 
     vec3 radiance = m.emissive;
@@ -79,7 +82,8 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ou
         if (passes) {
             const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
             const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE);
-            refraction = Branch(through, direction, inside | sun, false, 0.0);
+            const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
+            refraction = Branch(through, direction, inside | sun, false, 0.0, filtered ? packCone(beyond) : 0u);
             decide(refraction, state.weight, EFFECT_REFRACTION);
         }
     }

@@ -23,6 +23,7 @@ struct Surface {
     float offset;      ///< height above it from which secondary rays count, world units (planar hits)
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
+    float curvature;   ///< how much the normal turns per world unit; > 0: the ray meets a bulge. For cones: else 0
     TextureFactors factors;
 };
 
@@ -51,8 +52,9 @@ vec3 directionOr(vec3 v, vec3 otherwise) { return dot(v, v) > 0.0 ? normalize(v)
 
 /// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there are no tangents. As
 /// MikkTSpace has it, nothing is made unit before the sum.
-vec3 bentNormal(uint material, uvec3 corners, vec3 weights, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
-    const vec4 ta = tangentOf(material, corners.x), tb = tangentOf(material, corners.y), tc = tangentOf(material, corners.z);
+vec3 bentNormal(uint material, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
+    const vec4 ta = tangentOf(material, place.corners.x), tb = tangentOf(material, place.corners.y), tc = tangentOf(material, place.corners.z);
+    const vec3 weights = place.weights;
     vec3 a = ta.xyz, b = tb.xyz, c = tc.xyz;
     if (linear != mat3(1)) {
         a = directionOr(linear * a, vec3(0));
@@ -62,11 +64,12 @@ vec3 bentNormal(uint material, uvec3 corners, vec3 weights, mat3 linear, float t
     const vec3 tangent = a * weights.x + b * weights.y + c * weights.z;
     const float side = (ta.w * weights.x + tb.w * weights.y + tc.w * weights.z) * turned;
     if (side == 0.0 || dot(tangent, tangent) == 0.0) return otherwise;
-    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, corners, weights);
+    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, place);
     return directionOr(tangent * parts.x + bitangent * parts.y + normal * parts.z, otherwise);
 }
 
-Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
+/// `width`: of the light that the ray along `direction` stands for (cone.glsl); 0: a point, which textures do not blur.
+Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float width) {
     Surface s;
     const uvec3 corners = triangles[triangle];
     vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
@@ -102,13 +105,21 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction) {
     // The interpolated normal may disagree with the winding in careless files: it follows the triangle. One that lies in
     // the triangle's plane stays, whatever rounding makes of its side.
     const float side = dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1.0 : 1.0;
+    TexturePlace place = TexturePlace(corners, weights, 0.0);
+    s.curvature = 0.0;
+    if (filtered) {
+        if (size > 0.0) place.seen = width * width / (max(abs(dot(s.geometric, direction)), LEAST_COSINE) * size);
+        const vec3 ab = b - a, bc = c - b, ca = a - c;
+        const float way = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
+        if (way > 0.0) s.curvature = side * (dot(nb - na, ab) + dot(nc - nb, bc) + dot(na - nc, ca)) / way;
+    }
     vec3 bent = normal;
     s.material = triangle_materials[triangle];
-    if (bendsNormals(s.material)) bent = bentNormal(s.material, corners, weights, linear, turned, interpolated, normal);
+    if (bendsNormals(s.material)) bent = bentNormal(s.material, place, linear, turned, interpolated, normal);
     s.normal = visibleNormal(bent * side, s.geometric, -direction);
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
-    s.base_color = baseColor(s.material, corners, weights);
-    s.factors = textureFactors(s.material, corners, weights);
+    s.base_color = baseColor(s.material, place);
+    s.factors = textureFactors(s.material, place);
     return s;
 }
 

@@ -51,8 +51,9 @@ struct Frame {
     uvec2 block;        ///< pixels of a block of two_level
     uint draws;         ///< GpuDraw entries
     uvec2 camera_media;  ///< MediaStack: what the camera is in
+    vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 308);
+SHARED_SIZE(Frame, 316);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -106,7 +106,7 @@ void mediaClose(MediaGroup group, PeelrayRay ray, inout MediaMeeting m) {
     if (owner != 0u) {
         m.hit = group.hits[owner];
         m.hit.uv = mediaWeights(ray, m.hit);
-        m.surface = surfaceAt(m.hit.instance, m.hit.triangle, m.hit.uv, ray.direction);
+        m.surface = surfaceAt(m.hit.instance, m.hit.triangle, m.hit.uv, ray.direction, 0.0);
         error = max(error, m.surface.error);
     }
     m.at.lift = error * (WALLS_APART / POSITION_ROUNDING) * WALLS_LIFT;
@@ -136,7 +136,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
             m.last = uvec2(hit.instance, hit.triangle);
             m.wall = wall;
             if (!wall) return m;
-            m.surface = surfaceAt(hit.instance, hit.triangle, hit.uv, ray.direction);
+            m.surface = surfaceAt(hit.instance, hit.triangle, hit.uv, ray.direction, 0.0);
             mediaAdd(group, hit, m.surface, m.at.before);
             near = mediaNear(ray, hit, m.surface);
             looked = 0u;
@@ -144,7 +144,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
             continue;
         }
         if (hit.triangle != PEELRAY_MISS) {
-            const Surface beside = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction);
+            const Surface beside = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction, 0.0);
             const bool parallel = abs(dot(beside.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
             if (!wall && parallel && !transmits(materialOf(beside))) {
                 m.hit = hit;

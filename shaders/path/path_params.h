@@ -13,8 +13,9 @@ struct RayState {
     vec3 weight;  ///< share of the pixel's light that comes along this ray
     uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_SEES_SUN
     uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
+    uint cone;    ///< at the ray's start (cone.glsl)
 };
-SHARED_SIZE(RayState, 20);
+SHARED_SIZE(RayState, 24);
 #define MEDIUM_NONE 0x7fffffffu
 #define RAY_SEES_SUN 0x80000000u
 

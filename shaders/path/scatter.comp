@@ -85,7 +85,7 @@ void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId f
     if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
-    next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed);
+    next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed, branch.cone);
     next_skip[index] = from;
 }
 
@@ -229,7 +229,8 @@ Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
 void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
-    c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction);
+    const vec2 cone = coneAt(unpackCone(state.cone), hit.t);
+    c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction, cone.x);
     Interface face = interfaceInAir(materialOf(c.surface), c.surface.front);
     vec3 beside = vec3(1);
     if (layered)
@@ -238,7 +239,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
         c.lost = transmittance(state.medium, hit.t);
     state.weight *= c.lost;
     c.path_weight = state.weight;
-    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, c.reflection, c.refraction);
+    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, c.reflection, c.refraction);
     c.refraction.weight *= beside;
     // What is not traced sees the environment.
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);

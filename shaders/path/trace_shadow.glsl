@@ -32,7 +32,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         share *= meeting.at.passed;
         if (hit.triangle == PEELRAY_MISS) return share;
         if (!mayTransmit(hit.triangle)) return vec3(0);
-        const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction);
+        const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction, 0.0);
         const Material m = materialOf(s);
         if (!transmits(m)) return vec3(0);
         const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
@@ -59,7 +59,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         const PeelrayHit hit = traceShadow(ray, skip, false);
         if (hit.triangle == PEELRAY_MISS) return share;
         if (!mayTransmit(hit.triangle)) return vec3(0);
-        const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction);
+        const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction, 0.0);
         const Material m = materialOf(s);
         if (!transmits(m)) return vec3(0);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;

@@ -22,13 +22,13 @@ struct GltfLoader {
     Scene scene;
     Tally ignored;
     std::vector<std::vector<uint32_t>> uv_sets;  ///< per material: the TEXCOORD_ that its textures use, as they count
-    std::map<std::tuple<int, int, int, bool>, int> texture_ids;  ///< image, wraps, nearest → Scene::textures
-    std::optional<size_t> variant;                               ///< that which chooses the primitives' materials
-    float point_size = 0;                                        ///< LoadOptions::point_size
-    std::map<uint32_t, uint32_t> unlit_copies;                   ///< of materials, by those
-    std::map<int, std::string> damaged_images;                   ///< and what is wrong with them
-    uint64_t triangles = 0;                                      ///< in all primitives read so far
-    std::vector<ExactNode> exact_nodes;                          ///< of all nodes
+    std::map<std::tuple<int, int, int, int, int>, int> texture_ids;  ///< image, wraps, filters → Scene::textures
+    std::optional<size_t> variant;                                   ///< that which chooses the primitives' materials
+    float point_size = 0;                                            ///< LoadOptions::point_size
+    std::map<uint32_t, uint32_t> unlit_copies;                       ///< of materials, by those
+    std::map<int, std::string> damaged_images;                       ///< and what is wrong with them
+    uint64_t triangles = 0;                                          ///< in all primitives read so far
+    std::vector<ExactNode> exact_nodes;                              ///< of all nodes
 
     explicit GltfLoader(const std::filesystem::path& path) : file(path) {}
 

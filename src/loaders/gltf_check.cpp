@@ -214,7 +214,7 @@ Members file_members(size_t view_without_bytes, size_t no_node) {
         objects("meshes", {text("name"), numbers("weights", 0), objects("primitives", primitive_members())}),
         objects("materials", material_members()), objects("textures", texture_members()),
         objects("images", {text("name"), text("uri"), index("bufferView", "bufferViews")}),
-        objects("samplers", {whole("magFilter"), whole("wrapS"), whole("wrapT")}),
+        objects("samplers", {whole("magFilter"), whole("minFilter"), whole("wrapS"), whole("wrapT")}),
         objects("buffers", {text("uri"), required(size("byteLength")), meshopt({flag("fallback")})}),
         or_else(objects("bufferViews", view_members()), json::array()),
         objects("accessors", accessor_members(view_without_bytes)),

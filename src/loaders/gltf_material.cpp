@@ -31,6 +31,26 @@ std::optional<Texture::Wrap> wrap_mode(int mode) {
     }
 }
 
+/// Where the file leaves the choice: bilinear, and between levels. False: something in it is unknown.
+bool set_filters(Texture& texture, const tinygltf::Sampler& sampler) {
+    const int large = sampler.magFilter, small = sampler.minFilter;
+    texture.nearest = large == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    texture.min_nearest = small == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                          small == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+                          small == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
+    if (small == TINYGLTF_TEXTURE_FILTER_NEAREST || small == TINYGLTF_TEXTURE_FILTER_LINEAR)
+        texture.mipmaps = Texture::Mipmaps::none;
+    else if (small == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+             small == TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST)
+        texture.mipmaps = Texture::Mipmaps::nearest;
+    const bool knows_large = large == -1 || texture.nearest || large == TINYGLTF_TEXTURE_FILTER_LINEAR;
+    const bool knows_small = small == -1 || small == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                             small == TINYGLTF_TEXTURE_FILTER_LINEAR ||
+                             (small >= TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST &&
+                              small <= TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR);
+    return knows_large && knows_small;
+}
+
 /// An extension's object; tinygltf's null value, which has no members, where it is missing.
 const tinygltf::Value& extension(const tinygltf::ExtensionMap& extensions, const char* name) {
     static const tinygltf::Value none;
@@ -241,9 +261,8 @@ class MaterialReader {
             return wrap.value_or(Texture::Wrap::repeat);
         };
         const Texture::Wrap u = known(sampler.wrapS), v = known(sampler.wrapT);
-        const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-        const auto [entry, added] =
-            loader_.texture_ids.try_emplace({image, int(u), int(v), nearest}, int(loader_.scene.textures.size()));
+        const auto [entry, added] = loader_.texture_ids.try_emplace(
+            {image, int(u), int(v), sampler.magFilter, sampler.minFilter}, int(loader_.scene.textures.size()));
         if (added) {
             const std::string& name = model_.images[static_cast<size_t>(image)].name;
             Texture decoded;
@@ -256,7 +275,8 @@ class MaterialReader {
             decoded.name = name.empty() ? loader_.file.image_file(image) : name;
             decoded.wrap_u = u;
             decoded.wrap_v = v;
-            decoded.nearest = nearest;
+            if (!set_filters(decoded, sampler))
+                ++loader_.ignored["{} unknown filter{|s} of textures ignored (VALUE_NOT_IN_LIST)"];
             loader_.scene.textures.push_back(std::move(decoded));
         }
         return entry->second;

@@ -47,6 +47,9 @@ Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x,
     Shader::Path path;
     path.origin = glm::dvec3(view.eye) + (view.orthographic ? offset : glm::dvec3(0));
     path.direction = glm::normalize(glm::dvec3(view.forward) + (view.orthographic ? glm::dvec3(0) : offset));
+    // A pixel's share of the picture, or a sample's of the pixel.
+    const double across = 2 * glm::length(glm::dvec3(view.up)) / s.height / std::sqrt(double(s.spp));
+    path.cone = view.orthographic ? Cone{across, 0} : Cone{0, across};
     path.seed = optics::hash3({x, y, 0}).x;
     return path;
 }
@@ -107,7 +110,7 @@ struct PathTracer::Impl {
 
 void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit,
                             const Box& box) const {
-    const Surface s = surfaces.at(hit.triangle, hit.u, hit.v, path.direction);
+    const Surface s = surfaces.at(hit.triangle, hit.u, hit.v, path.direction, path.cone.width_at(hit.t));
     Aovs& a = picture.aovs;
     a.depth[at] = float(hit.t);
     a.triangle[at] = float(hit.triangle);

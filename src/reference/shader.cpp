@@ -93,12 +93,14 @@ glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
 glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
     if (!hit.hit()) return meeting.passed * context_.surroundings.seen(arriving.direction, arriving.sees_sun);
-    Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction);
+    const double width = arriving.cone.width_at(hit.t);
+    Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
     const glm::dvec3 kept = meeting.passed * transmittance(meeting.before.counting(context_.media), hit.t);
     Path path = arriving;
     path.weight *= kept;
     path.media = meeting.before;
+    path.cone.width = width;  // at the hit
     const Scattered scattered = scatter(surface, path, meeting);
     glm::dvec3 sum = scattered.radiance;
     // The reference goes on in all of them; the GPU's rays do not.
@@ -124,6 +126,7 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.skip = triangle;
     next.weight = path.weight * branch.weight;
     next.media = branch.media;
+    next.cone = branch.cone;
     next.sees_sun = branch.sees_sun;
     next.seed = hash3({path.seed, which, path.level}).x;
     next.level = path.level + 1;
@@ -178,6 +181,9 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     }
     reflection.direction = above_surface(reflected, s.geometric);
     reflection.media = meeting.before;
+    // The mirrored direction turns twice as far as the normal, the refracted one as Snell's law has it near the normal.
+    const double turn = s.curvature * path.cone.width;
+    reflection.cone = {path.cone.width, path.cone.spread + 2 * turn};
     reflection.sees_sun = mirror && path.sees_sun;
     reflection.traced = is_traced(reflection, path, settings.reflection);
     reflection.blur = settings.spp > 1 ? 0 : m.roughness;
@@ -199,6 +205,8 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         refraction.weight = (1.0 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
         refraction.direction = *direction;
         refraction.media = meeting.behind;
+        refraction.cone = path.cone;
+        if (!m.thin) refraction.cone.spread = (path.cone.spread + turn) / relative_index(meeting, s) - turn;
         refraction.sees_sun = mirror && path.sees_sun;
         refraction.traced = is_traced(refraction, path, settings.refraction);
         refraction.weight *= meeting.beside;

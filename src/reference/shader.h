@@ -24,6 +24,13 @@ struct RenderContext {
     Media start;  ///< what the camera is in
 };
 
+/// How wide the light is that a ray stands for (Akenine-Möller et al., JCGT 2021).
+struct Cone {
+    double width = 0;   ///< at the ray's start, world units; < 0: behind a focus
+    double spread = 0;  ///< how much wider it gets per world unit
+    double width_at(double t) const { return width + t * spread; }
+};
+
 /// Follows the rays of one sample of one pixel.
 class Shader {
   public:
@@ -34,6 +41,7 @@ class Shader {
         uint32_t skip = none;          ///< triangle that does not count: the one where the ray starts
         glm::dvec3 weight{1};          ///< share of the pixel's light that comes along the ray
         Media media;                   ///< what the ray is in at its start
+        Cone cone;
         bool sees_sun = true;
         uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
         uint32_t level = 0;
@@ -53,6 +61,7 @@ class Shader {
         glm::dvec3 weight{0};  ///< share of the hit's light; 0: no branch
         glm::dvec3 direction{0, 0, 1};
         Media media;
+        Cone cone;
         bool sees_sun = false;
         bool traced = false;
         double blur = 0;  ///< roughness for the environment, if not traced

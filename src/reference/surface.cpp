@@ -46,13 +46,13 @@ glm::dvec3 Surface::start(const glm::dvec3& point, const glm::dvec3& direction) 
     return point + geometric * (glm::dot(direction, geometric) >= 0 ? error : -error);
 }
 
-Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry) {
+Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry), mipmaps_(scene) {
     for (const Material& material : scene.materials) optics_.emplace_back(material);
 }
 
-Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const {
+Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& direction, double width) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
-    const Place place{corners, {std::max(0.0, 1 - u - v), u, v}};
+    Place place{corners, {std::max(0.0, 1 - u - v), u, v}, 0};
     const glm::dvec3& weights = place.weights;
     glm::dvec3 p[3], n[3];
     for (int i = 0; i < 3; i++) {
@@ -77,9 +77,19 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     s.geometric = size > 0 ? area / size : normal;
     s.front = glm::dot(s.geometric, direction) < 0;
     if (!s.front) s.geometric = -s.geometric;
+    // The cone's cross-section, seen slanted (Akenine-Möller et al., JCGT 2021).
+    const double slope = std::max(std::abs(glm::dot(s.geometric, direction)), LEAST_COSINE);
+    if (size > 0) place.seen = 2 * width * width / (slope * size);
     const double side = glm::dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1 : 1;
     s.normal =
         optics::visible_normal(side * bent(s.material, place, interpolated).value_or(normal), s.geometric, -direction);
+    double turn = 0, way = 0;
+    for (int i = 0; i < 3; i++) {
+        const glm::dvec3 edge = p[(i + 1) % 3] - p[i];
+        turn += side * glm::dot(n[(i + 1) % 3] - n[i], edge);
+        way += glm::dot(edge, edge);
+    }
+    s.curvature = way > 0 ? turn / way : 0;
     s.shadow_start = glm::dvec3(0);
     for (int i = 0; i < 3; i++) {
         // The position, lifted to the plane through each corner along the corner's normal.
@@ -109,18 +119,32 @@ bool Surfaces::blocks_itself(const Surface& s, uint32_t triangle, const glm::dve
     return least >= -OWN_TRIANGLE_RIM * area(a, b, c);
 }
 
-glm::dvec2 Surfaces::coordinates(const MaterialTexture& use, const Place& place) const {
-    const glm::dvec2 uv = place.interpolate(geometry_.uv_set(use.uv_set));
-    return glm::dmat2(use.uv_matrix) * uv + glm::dvec2(use.uv_offset);
+template <typename Sample>
+auto Surfaces::filtered(const MaterialTexture& use, const Place& place, bool is_data, Sample sample) const {
+    const std::vector<glm::vec2>& uvs = geometry_.uv_set(use.uv_set);
+    const glm::dmat2 matrix(use.uv_matrix);
+    const glm::dvec2 at = matrix * place.interpolate(uvs) + glm::dvec2(use.uv_offset);
+    const Texture& texture = scene_.textures[size_t(use.texture)];
+    // How many texels the footprint covers, as the triangle maps them.
+    const glm::dvec2 a(uvs[place.corners.x]), b(uvs[place.corners.y]), c(uvs[place.corners.z]);
+    const double area = std::abs(glm::determinant(matrix * glm::dmat2(b - a, c - a))) / 2;
+    const double texels = place.seen * area * texture.width * texture.height;
+    const LevelChoice choice = choose_level(texture, std::log2(texels) / 2);
+    const std::vector<Texture>& smaller = mipmaps_.of(use.texture, is_data);
+    const auto level = [&](uint32_t i) { return sample(i == 0 ? texture : smaller[i - 1], at, choice.nearest); };
+    return choice.part > 0 ? glm::mix(level(choice.first), level(choice.second), choice.part) : level(choice.first);
+}
+
+glm::dvec4 Surfaces::data(const MaterialTexture& use, const Place& place) const {
+    return filtered(use, place, true, sample_data);
 }
 
 double Surfaces::number(const MaterialTexture& use, const Place& place) const {
-    if (!use) return 1;
-    return sample_data(scene_.textures[size_t(use.texture)], coordinates(use, place))[int(use.channel)];
+    return use ? data(use, place)[int(use.channel)] : 1;
 }
 
 glm::dvec3 Surfaces::color(const MaterialTexture& use, const Place& place) const {
-    return use ? sample_color(scene_.textures[size_t(use.texture)], coordinates(use, place)) : glm::dvec3(1);
+    return use ? filtered(use, place, false, sample_color) : glm::dvec3(1);
 }
 
 Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
@@ -151,8 +175,7 @@ std::optional<glm::dvec3> Surfaces::bent(uint32_t material, const Place& place, 
     const glm::dvec3 tangent(along);
     if (along.w == 0 || glm::dot(tangent, tangent) == 0) return {};
     const glm::dvec3 bitangent = (along.w < 0 ? -1.0 : 1.0) * glm::cross(normal, tangent);
-    const glm::dvec3 texel(
-        sample_data(scene_.textures[size_t(m.normal_texture.texture)], coordinates(m.normal_texture, place)));
+    const glm::dvec3 texel(data(m.normal_texture, place));
     const glm::dvec3 parts = (texel * 2.0 - 1.0) * glm::dvec3(m.normal_scale, m.normal_scale, 1);
     const glm::dvec3 sum = tangent * parts.x + bitangent * parts.y + normal * parts.z;
     if (glm::dot(sum, sum) == 0) return {};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/environment.h"
+#include "scene/mipmaps.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -45,7 +46,8 @@ struct Surface {
     double error;   ///< bound on the position's rounding error, world units
     bool front;     ///< the ray comes from the side that the normals point to
     uint32_t material;
-    Optics optics;  ///< the material here
+    Optics optics;     ///< the material here
+    double curvature;  ///< how much the normal turns per world unit; > 0: the ray meets a bulge
 
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
     /// a triangle that coincides with the surface's own is not hit either.
@@ -60,8 +62,9 @@ class Surfaces {
   public:
     Surfaces(const Scene& scene, const Geometry& geometry);
 
-    /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction`.
-    Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction) const;
+    /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction` by a ray that
+    /// stands for light of this `width` (0: a point, which textures do not blur).
+    Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction, double width = 0) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
     /// A material's constants, without its textures.
@@ -74,6 +77,7 @@ class Surfaces {
     struct Place {
         glm::uvec3 corners;
         glm::dvec3 weights;
+        double seen;  ///< area of what the ray stands for, over that of the triangle
         template <typename T>
         auto interpolate(const std::vector<T>& values) const {
             return glm::vec<T::length(), double>(values[corners.x]) * weights.x +
@@ -81,8 +85,10 @@ class Surfaces {
                    glm::vec<T::length(), double>(values[corners.z]) * weights.z;
         }
     };
-    /// Texture coordinates of a use; the texture is there.
-    glm::dvec2 coordinates(const MaterialTexture& use, const Place& place) const;
+    /// What a use's texture shows there, filtered; sample(level, coordinates, nearest).
+    template <typename Sample>
+    auto filtered(const MaterialTexture& use, const Place& place, bool is_data, Sample sample) const;
+    glm::dvec4 data(const MaterialTexture& use, const Place& place) const;
     /// The single number that a use reads, 1 where there is no texture.
     double number(const MaterialTexture& use, const Place& place) const;
     glm::dvec3 color(const MaterialTexture& use, const Place& place) const;
@@ -92,6 +98,7 @@ class Surfaces {
     const Scene& scene_;
     const Geometry& geometry_;
     std::vector<Optics> optics_;
+    Mipmaps mipmaps_;
 };
 
 /// Light from outside the scene; the environment must outlive it.

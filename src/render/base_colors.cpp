@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <deque>
+#include <map>
 
 #include "base/error.h"
 #include "common/material.h"
 #include "render/fresnel_fit.h"
+#include "scene/mipmaps.h"
 #include "scene/sidedness.h"
 
 namespace peelray {
@@ -62,20 +65,24 @@ uint64_t most_rows(const Device& device) {
 /// The textures that materials use, each from the start of a row on.
 class TextureStore {
   public:
-    explicit TextureStore(const Scene& scene) : scene_(scene), rows_(scene.textures.size(), ~uint64_t(0)) {}
+    explicit TextureStore(const Scene& scene) : scene_(scene) {}
 
     /// An entry of the table for what a material uses; -1: it uses none. `is_data`: not encoded as sRGB.
     int add(const MaterialTexture& use, bool is_data, uint64_t vertices) {
         if (!use) return -1;
         const Texture& texture = scene_.textures[size_t(use.texture)];
-        uint64_t& row = rows_[size_t(use.texture)];
-        if (row == ~uint64_t(0)) {
-            row = row_count_;
-            row_count_ += (words(texture).size() + (1u << TEXEL_ROW_BITS) - 1) >> TEXEL_ROW_BITS;
-        }
-        GpuTexture entry{uint32_t(row << TEXEL_ROW_BITS), texture.width, texture.height, 0};
+        const auto [first, added] = first_.try_emplace(use.texture, 0);
+        if (added) first->second = keep(words(texture));
+        GpuTexture entry{first->second, texture.width, texture.height, 0};
         entry.flags = uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2 | (texture.nearest ? USE_NEAREST : 0u) |
-                      (is_data ? USE_DATA : 0u) | (texture.deep_texels.empty() ? 0u : USE_DEEP);
+                      (is_data ? USE_DATA : 0u) | (texture.deep_texels.empty() ? 0u : USE_DEEP) |
+                      (texture.min_nearest ? USE_MIN_NEAREST : 0u);
+        if (texture.mipmaps != Texture::Mipmaps::none && texture.width * uint64_t(texture.height) > 1) {
+            const auto [smaller, made] = smaller_.try_emplace({use.texture, is_data}, 0);
+            if (made) smaller->second = keep_levels(texture, is_data);
+            entry.smaller = smaller->second;
+            entry.flags |= texture.mipmaps == Texture::Mipmaps::linear ? USE_LEVELS | USE_BETWEEN : USE_LEVELS;
+        }
         entry.first_uv = uint32_t(use.uv_set * vertices);
         entry.u_axis = use.uv_matrix[0];
         entry.v_axis = use.uv_matrix[1];
@@ -98,8 +105,7 @@ class TextureStore {
         Image2D image(device, "textures", uint32_t(width), uint32_t(std::min(row_count_, layer_rows)),
                       VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                       VK_IMAGE_ASPECT_COLOR_BIT, uint32_t((row_count_ + layer_rows - 1) / layer_rows), true);
-        for (size_t i = 0; i < rows_.size(); i++)
-            if (rows_[i] != ~uint64_t(0)) commands.upload(image, words(scene_.textures[i]), rows_[i]);
+        for (const Kept& kept : kept_) commands.upload(image, kept.words, kept.row);
         return image;
     }
 
@@ -111,10 +117,42 @@ class TextureStore {
         return {reinterpret_cast<const uint32_t*>(texture.deep_texels.data()), 2 * texture.deep_texels.size()};
     }
 
+    /// Words that lie in the rows from `row` on; of the scene's textures or of levels that were made here.
+    struct Kept {
+        std::span<const uint32_t> words;
+        uint64_t row;
+    };
+
+    /// Returns the place of the first word.
+    uint32_t keep(std::span<const uint32_t> list) {
+        const uint64_t row = row_count_;
+        kept_.push_back({list, row});
+        row_count_ += (list.size() + (1u << TEXEL_ROW_BITS) - 1) >> TEXEL_ROW_BITS;
+        return uint32_t(row << TEXEL_ROW_BITS);
+    }
+
+    /// Levels 1, 2, … one after the other.
+    uint32_t keep_levels(const Texture& texture, bool is_data) {
+        std::vector<uint32_t>& all = levels_.emplace_back();
+        for (const Texture& level : make_mipmaps(texture, is_data)) {
+            const std::span<const uint32_t> list = words(level);
+            all.insert(all.end(), list.begin(), list.end());
+        }
+        return keep(all);
+    }
+
     const Scene& scene_;
-    std::vector<uint64_t> rows_;  ///< of each texture the first
+    std::map<int, uint32_t> first_;                     ///< by texture
+    std::map<std::pair<int, bool>, uint32_t> smaller_;  ///< by texture and whether it is data
+    std::deque<std::vector<uint32_t>> levels_;          ///< a deque: entries stay where they are
+    std::vector<Kept> kept_;
     uint64_t row_count_ = 0;
 };
+
+/// Does it matter how large the texture is seen?
+bool is_filtered(const GpuTexture& texture) {
+    return texture.flags & USE_LEVELS || !(texture.flags & USE_NEAREST) != !(texture.flags & USE_MIN_NEAREST);
+}
 
 /// Texture coordinates, set after set, then the tangents, in one buffer: passes that shade bind as many as any device
 /// allows.
@@ -146,8 +184,8 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
         m.first_tangent = out.first_tangent;
         for (int k = 0; k < TEXTURE_USES; k++) {
             const MaterialTexture& use = material.*material_textures[size_t(k)];
-            const bool is_data = k != TEXTURE_BASE_COLOR && k != TEXTURE_EMISSIVE && k != TEXTURE_SPECULAR_COLOR;
-            m.textures[k] = used[i] ? textures.add(use, is_data, assembly.uvs.size()) : -1;
+            m.textures[k] =
+                used[i] ? textures.add(use, !is_color(material_textures[size_t(k)]), assembly.uvs.size()) : -1;
             m.channels |= use.channel << 2 * k;
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;
@@ -156,6 +194,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
         if (used[i] && m.flags & MATERIAL_SCHLICK) out.kinds |= MATERIALS_SPECIFIED;
         materials.push_back(m);
     }
+    if (std::ranges::any_of(textures.table, is_filtered)) out.kinds |= MATERIALS_FILTERED;
     out.materials = upload(device, commands, "materials", materials);
     out.texture_infos = upload(device, commands, "texture table", textures.table);
     out.texels = textures.upload(device, commands);

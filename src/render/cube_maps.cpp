@@ -93,6 +93,7 @@ void CubeMaps::upload_frames(Commands& commands, const Frame& picture) {
         Frame frame = picture;
         frame.width = frame.height = frame.row_pixels = face_;
         frame.near = 0.005f * glm::length(object.upper - object.lower);
+        frame.cone = {0, 2.0f / float(face_)};  // a face sees a right angle
         const glm::vec3 eye = position(probe.object);
         // Outermost texel centres on the face's edges.
         for (uint32_t face = 0; face < 6; face++) {

@@ -56,7 +56,8 @@ uint32_t triangles_of(const Assembly& assembly) {
     return triangles;
 }
 
-void describe_view(Frame& frame, const View& view) {
+/// `samples`: as many stand for a pixel, each for its share.
+void describe_view(Frame& frame, const View& view, uint32_t height, uint32_t samples) {
     frame.eye = view.eye;
     frame.right = view.right;
     frame.up = view.up;
@@ -64,6 +65,8 @@ void describe_view(Frame& frame, const View& view) {
     frame.orthographic = view.orthographic;
     frame.near = view.near;
     frame.far = view.far;
+    const float across = 2 * glm::length(view.up) / (float(height) * std::sqrt(float(samples)));
+    frame.cone = view.orthographic ? glm::vec2(across, 0) : glm::vec2(0, across);
 }
 
 uint32_t effects_of(const PictureSettings& settings) {
@@ -170,7 +173,8 @@ void Renderer::Impl::prepare_view() {
     Frame& frame = f.constants = {};
     f.scene.describe(frame);
     describe_view(frame,
-                  make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
+                  make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper),
+                  settings.height, settings.spp);
     f.tracer->describe(frame);
     frame.camera_media = camera_media();
     // A band's largest queue entries are rays and branches, or the walls of media; bands keep each queue below what the

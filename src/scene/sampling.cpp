@@ -22,7 +22,7 @@ double channel_of(const Texture& texture, size_t texel, uint32_t i) {
 }
 
 template <typename Decode>
-auto sample(const Texture& texture, const glm::dvec2& uv, Decode decode) {
+auto sample(const Texture& texture, const glm::dvec2& uv, bool nearest, Decode decode) {
     const auto fetch = [&](int x, int y) {
         const auto column = size_t(wrap(x, int(texture.width), texture.wrap_u));
         const auto row = size_t(wrap(y, int(texture.height), texture.wrap_v));
@@ -33,28 +33,28 @@ auto sample(const Texture& texture, const glm::dvec2& uv, Decode decode) {
         return mode == Texture::Wrap::clamp ? std::clamp(x, 0.0, 1.0) : x - 2 * std::floor(x / 2);
     };
     const glm::dvec2 p(place(uv.x, texture.wrap_u) * texture.width, place(uv.y, texture.wrap_v) * texture.height);
-    if (texture.nearest) return fetch(int(std::floor(p.x)), int(std::floor(p.y)));
+    if (nearest) return fetch(int(std::floor(p.x)), int(std::floor(p.y)));
     return bilinear(p, fetch);
 }
 
 }  // namespace
 
-glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv) {
-    return sample(texture, uv, [&](size_t texel) {
+glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv, bool nearest) {
+    return sample(texture, uv, nearest, [&](size_t texel) {
         const auto channel = [&](uint32_t i) { return srgb_to_linear(channel_of(texture, texel, i)); };
         return glm::dvec3(channel(0), channel(1), channel(2));
     });
 }
 
-glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv) {
-    return sample(texture, uv, [&](size_t texel) {
+glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv, bool nearest) {
+    return sample(texture, uv, nearest, [&](size_t texel) {
         return glm::dvec4(channel_of(texture, texel, 0), channel_of(texture, texel, 1), channel_of(texture, texel, 2),
                           channel_of(texture, texel, 3));
     });
 }
 
 double sample_alpha(const Texture& texture, const glm::dvec2& uv) {
-    return sample(texture, uv, [&](size_t texel) { return channel_of(texture, texel, 3); });
+    return sample(texture, uv, texture.nearest, [&](size_t texel) { return channel_of(texture, texel, 3); });
 }
 
 double least_value(const Texture& texture, uint32_t channel) {

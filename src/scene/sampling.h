@@ -16,11 +16,11 @@ auto bilinear(const glm::dvec2& p, Fetch fetch) {
                     f.y);
 }
 
-/// Linear colour; wrapped, nearest or bilinear as the texture says, without mipmaps.
-glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv);
+/// Linear colour of one level; `nearest`: of the nearest texel, else bilinear.
+glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv, bool nearest);
 /// The same of all channels as they are stored, [0, 1].
-glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv);
-/// The same of alpha alone.
+glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv, bool nearest);
+/// Alpha, magnified as the texture says.
 double sample_alpha(const Texture& texture, const glm::dvec2& uv);
 
 /// The least value of a channel; 1 for a texture without texels.

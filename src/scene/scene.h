@@ -22,12 +22,16 @@ namespace peelray {
 /// green and blue are sRGB-encoded is for the use to say; alpha is linear.
 struct Texture {
     enum class Wrap : uint8_t { repeat, mirror, clamp };
+    enum class Mipmaps : uint8_t { none, nearest, linear };
     std::string name;
     uint32_t width = 0, height = 0;
     std::vector<uint32_t> texels;       ///< width·height of 8 bits a channel, red in the lowest byte
     std::vector<uint64_t> deep_texels;  ///< instead of them: 16 bits a channel, red in the lowest
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    bool nearest = false;  ///< magnification filter: nearest texel instead of bilinear
+    bool nearest = false;      ///< where it is magnified: the nearest texel instead of the four around
+    bool min_nearest = false;  ///< the same where it is made smaller
+    /// Which of its levels serve where it is made smaller (scene/mipmaps.h): the first alone, the nearest, two.
+    Mipmaps mipmaps = Mipmaps::linear;
 };
 
 /// A texture as a material uses it. Only its default and its number alone are implicit.
@@ -80,6 +84,12 @@ inline constexpr std::array<MaterialTexture Material::*, 10> material_textures =
     &Material::roughness_texture,     &Material::transmission_texture, &Material::thickness_texture,
     &Material::normal_texture,        &Material::occlusion_texture,    &Material::specular_texture,
     &Material::specular_color_texture};
+
+/// Does a use read its texture's red, green and blue as an sRGB-encoded colour?
+constexpr bool is_color(MaterialTexture Material::*use) {
+    return use == &Material::base_color_texture || use == &Material::emissive_texture ||
+           use == &Material::specular_color_texture;
+}
 
 /// Joints of a skin that pull at a vertex, and how much; the weights sum to 1, or all are 0 (the vertex follows its
 /// node).

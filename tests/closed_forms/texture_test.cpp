@@ -349,5 +349,109 @@ TEST_F(TextureTest, TangentsMorphAndFollowTheirJoint) {
     }
 }
 
+/// Stripes of one texel, 255 and 0, along u; as many texels along v.
+Texture stripes(uint32_t size) {
+    Texture t;
+    t.width = t.height = size;
+    for (uint32_t i = 0; i < size * size; i++) t.texels.push_back(i % 2 ? 0xff000000u : 0xffffffffu);
+    return t;
+}
+
+Material shows(int texture) {
+    Material m = unlit({1, 1, 1});
+    m.base_color_texture = texture;
+    return m;
+}
+
+TEST_F(TextureTest, SmallTexturesAreMeans) {
+    // A pixel covers four texels: level 2, which is one grey in linear light. Magnified, or of level 0 alone, it is
+    // not.
+    Stage stage;
+    stage.add(texture_square(), shows(0));
+    stage.scene.textures = {stripes(256)};
+    const Camera camera = orthographic({0, 0, 2}, {0, 0, 0}, 1.9f);
+    const RenderSettings settings = settings_for(camera, 60);
+    const auto grey = [](const ViewRay&) { return glm::dvec3(0.5); };
+    tally(render(stage, black, settings), camera, 4e-3, grey)  // 0.5 has no code of its own
+        .expect(0, 3600);
+    for (const bool none : {false, true}) {
+        stage.scene.textures[0].mipmaps = none ? Texture::Mipmaps::none : Texture::Mipmaps::linear;
+        RenderSettings close = settings;
+        if (!none) close.camera.orthographic_height = 0.3f;
+        const Tally wrong = tally(render(stage, black, close), close.camera, 0.02, grey);
+        EXPECT_GT(wrong.wrong, 1000u) << none;
+    }
+}
+
+TEST_F(TextureTest, LevelsMeetAtTheirMean) {
+    // Red in level 0 alone, which no pixel shows by itself: half way between levels 0 and 1 half of it is left.
+    Stage stage;
+    stage.add(texture_square(), shows(0));
+    stage.scene.textures = {stripes(64)};
+    const auto spread_at = [&](double texels) {
+        const Camera camera = orthographic({0, 0, 2}, {0, 0, 0}, float(texels));
+        const RenderResult picture = render(stage, black, settings_for(camera, 32));
+        double least = 1, most = 0;
+        for (const glm::vec4& p : picture.radiance) {
+            least = std::min(least, double(p.x));
+            most = std::max(most, double(p.x));
+        }
+        return most - least;
+    };
+    EXPECT_GT(spread_at(0.9), 0.85);   // magnified
+    EXPECT_LT(spread_at(1.99), 0.02);  // almost level 1
+    EXPECT_NEAR(spread_at(std::sqrt(2)), 0.5, 0.03);
+}
+
+TEST_F(TextureTest, MirrorsSeeWhatIsFarBlurred) {
+    // The way over the mirror counts: close to it the stripes are resolved, as far again behind the camera they are
+    // not.
+    for (const double distance : {0.2, 40.0}) {
+        Stage stage;
+        const float size = float(distance) + 1;
+        Primitive wall = faces({{{size, -size, float(distance)},
+                                 {-size, -size, float(distance)},
+                                 {-size, size, float(distance)},
+                                 {size, size, float(distance)}}});
+        for (const glm::vec3& p : wall.positions) wall.uvs.push_back(glm::vec2(p) * 2.0f);  // a stripe is 1/32 wide
+        stage.add(wall, shows(0));
+        stage.scene.materials[0].double_sided = true;
+        stage.add(parallelogram({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), plane_mirror());
+        stage.scene.textures = {stripes(16)};
+        const Camera camera = perspective({0, 0, 0.15f}, {0, 0, 0}, 30);
+        const RenderResult picture = render(stage, black, settings_for(camera, 48));
+        double mean = 0, square = 0;
+        for (const glm::vec4& p : picture.radiance) {
+            mean += p.x / double(picture.radiance.size());
+            square += p.x * p.x / double(picture.radiance.size());
+        }
+        EXPECT_NEAR(mean, 0.5, 0.06) << distance;
+        const double deviation = std::sqrt(square - mean * mean);
+        if (distance > 1)
+            EXPECT_LT(deviation, 0.02);
+        else
+            EXPECT_GT(deviation, 0.2);
+    }
+}
+
+TEST_F(TextureTest, SamplesShareThePixel) {
+    // A pixel of 1.8 texels is blurred, but each of four samples stands for 0.9: level 0 serves.
+    Stage stage;
+    stage.add(texture_square(), shows(0));
+    stage.scene.textures = {stripes(64)};
+    RenderSettings settings = settings_for(orthographic({0, 0, 2}, {0, 0, 0}, 1.8f), 32);
+    for (const uint32_t spp : {1u, 4u}) {
+        settings.spp = spp;
+        stage.scene.textures[0].mipmaps = Texture::Mipmaps::linear;
+        const RenderResult blurred = render(stage, black, settings);
+        stage.scene.textures[0].mipmaps = Texture::Mipmaps::none;
+        const size_t wrong = tally(blurred, render(stage, black, settings), 1e-5).wrong;
+        if (spp == 1)
+            EXPECT_GT(wrong, 900u);
+        else
+            EXPECT_EQ(wrong, 0u);
+    }
+}
+
 }  // namespace
 }  // namespace peelray
