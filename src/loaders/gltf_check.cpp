@@ -412,12 +412,9 @@ void note_undeclared(const json& root, Tally& faults) {
                 if (!declared.contains(name)) undeclared.insert(name);
         }
     }
-    for (const std::string& name : undeclared) {
-        std::string plain = printable(name, 60);
-        std::erase_if(plain, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
+    for (const std::string& name : undeclared)
         ++faults[fmt::format("{{}} extension in use that extensionsUsed does not name, {}: {} (UNDECLARED_EXTENSION)",
-                             plain, is_supported_extension(name) ? "read all the same" : "without effect")];
-    }
+                             escaped(name, 60), is_supported_extension(name) ? "read all the same" : "without effect")];
 }
 
 void check_required_extensions(const json& root, const std::string& name) {

@@ -210,13 +210,11 @@ class MaterialReader {
         const std::optional<int> image = image_of(texture);
         if (!image) return image;
         if (loader_.file.is_image_missing(*image)) {
-            std::string file = printable(loader_.file.image_file(*image), 80);
-            std::erase_if(file, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
             ++loader_.ignored[is_base_color
                                   ? fmt::format(
                                         "{{}} base colour texture{{|s}} left out, the image file {} is missing: the "
                                         "factors are used",
-                                        file)
+                                        escaped(loader_.file.image_file(*image), 80))
                                   : "{} texture{|s} other than of the base colour left out, {its|their} image {file "
                                     "is|files are} missing"];
             return std::nullopt;

@@ -33,23 +33,17 @@ class MtlReader {
             if (key == "newmtl") {
                 out_.emplace_back().name = trimmed(rest);
             } else if (out_.empty()) {
-                ++tally_[fmt::format("{{}} statement{{|s}} before the first newmtl of \"{}\" ignored", escaped(name_))];
+                ++tally_[fmt::format("{{}} statement{{|s}} before the first newmtl of \"{}\" ignored",
+                                     escaped(name_, 80))];
             } else if (!statement(key, trimmed(rest))) {
                 ++tally_[fmt::format("{{}} statement{{|s}} in line {} of \"{}\" ignored, its value cannot be read: {}",
-                                     lines.number(), escaped(name_), escaped(printable(trimmed(lines.line()), 60)))];
+                                     lines.number(), escaped(name_, 80), escaped(trimmed(lines.line()), 60))];
             }
         }
         return std::move(out_);
     }
 
   private:
-    /// Braces doubled, for text in the tally's sentences.
-    static std::string escaped(std::string_view text) {
-        std::string out;
-        for (const char c : printable(text, 80)) out += c == '{' ? "{{" : c == '}' ? "}}" : std::string(1, c);
-        return out;
-    }
-
     /// False: its value cannot be read.
     bool statement(const std::string& key, std::string_view rest) {
         MtlMaterial& m = out_.back();
@@ -75,8 +69,7 @@ class MtlReader {
         if (lower == "bump" || lower == "map_bump")
             ++tally_["{} bump map{|s} (map_bump), which {holds|hold} heights, ignored; normal maps (norm) are read"];
         else
-            ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect",
-                                 escaped(printable(key, 20)))];
+            ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect", escaped(key, 20))];
         return true;
     }
 

@@ -429,7 +429,7 @@ class ObjReader {
             all.count += met.count;
         }
         note(all, fmt::format("{{}} line{{|s}} that {{begins|begin}} with no OBJ keyword (such as \"{}\") ignored",
-                              unknown_.begin()->first));
+                              escaped(unknown_.begin()->first)));
     }
 
     const std::string_view text_;

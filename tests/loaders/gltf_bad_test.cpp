@@ -320,5 +320,13 @@ TEST(GltfBad, Images) {
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
 }
 
+TEST(GltfBad, BracesInNamesStayInNotes) {
+    const TempFolder folder;
+    EXPECT_MENTIONS(all_notes(load(folder, textured("{a|b}{}.png"))), "the image file {a|b}{}.png is missing");
+    json gltf = square();
+    gltf["nodes"][0]["extensions"]["EXT_{a|b}{}"] = json::object();
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "EXT_{a|b}{}: without effect");
+}
+
 }  // namespace
 }  // namespace peelray::testing
