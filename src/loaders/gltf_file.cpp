@@ -231,9 +231,18 @@ Bytes GltfFile::read_buffer(size_t index) {
     return bytes;
 }
 
-std::span<const uint8_t> GltfFile::bytes_of(const std::string& at, size_t buffer, uint64_t offset,
-                                            uint64_t length) const {
-    if (!buffer_sources_[buffer].has_data)
+/// Whether a buffer has bytes. Those of a fallback are read when they are first asked for.
+bool GltfFile::has_data(size_t buffer) {
+    BufferSource& source = buffer_sources_[buffer];
+    if (source.has_data) return true;
+    if (source.uri.empty()) return false;
+    source.has_data = true;
+    model_.buffers[buffer].data = read_buffer(buffer);
+    return true;
+}
+
+std::span<const uint8_t> GltfFile::bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length) {
+    if (!has_data(buffer))
         fail("{}: the buffer has no data: no \"uri\" and no GLB chunk; export the scene uncompressed",
              where("buffers", buffer));
     const std::span<const uint8_t> data = model_.buffers[buffer].data;
@@ -251,7 +260,7 @@ std::span<const uint8_t> GltfFile::view(int index) {
         try {
             decompressed_[i] = decompress(i, *compressed);
         } catch (const Error&) {
-            if (!has_fallback(buffer)) throw;
+            if (!has_data(buffer)) throw;
             compressed.reset();
             ++ignored_
                 ["{} compressed buffer view{|s} that cannot be decoded read from {its|their} uncompressed fallback"];
@@ -261,7 +270,7 @@ std::span<const uint8_t> GltfFile::view(int index) {
     return bytes_of(where("bufferViews", i), buffer, view.byteOffset, view.byteLength);
 }
 
-Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& from) const {
+Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& from) {
     const std::string at = where("bufferViews", view) + ".extensions";
     Bytes out = decode_meshopt(bytes_of(at, from.buffer, from.offset, from.length), from.layout, at);
     const size_t length = model_.bufferViews[view].byteLength;
@@ -269,16 +278,6 @@ Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& fr
         fail("{}: {} elements of {} bytes are not the {} bytes of the buffer view", at, from.layout.count,
              from.layout.stride, length);
     return out;
-}
-
-/// Whether a buffer that was passed over has data after all, which is then read.
-bool GltfFile::has_fallback(size_t buffer) {
-    BufferSource& source = buffer_sources_[buffer];
-    if (source.has_data) return true;
-    if (source.uri.empty()) return false;
-    source.has_data = true;
-    model_.buffers[buffer].data = read_buffer(buffer);
-    return true;
 }
 
 double GltfFile::Accessor::largest() const {

@@ -83,9 +83,9 @@ class GltfFile {
     void load(const std::string& text, const Glb* glb);
     Bytes read_uri(const std::string& uri, const std::string& where);
     Bytes read_buffer(size_t index);
-    std::span<const uint8_t> bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length) const;
-    Bytes decompress(size_t view, const GltfExtensions::CompressedView& from) const;
-    bool has_fallback(size_t buffer);
+    bool has_data(size_t buffer);
+    std::span<const uint8_t> bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length);
+    Bytes decompress(size_t view, const GltfExtensions::CompressedView& from);
     Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count, size_t element_size);
     template <typename T, typename Load>
     std::vector<T> read(const tinygltf::Accessor& from, const Accessor& accessor, Load load);
