@@ -196,11 +196,11 @@ class MaterialReader {
         return index;
     }
 
-    /// The image that a texture shows; none (with a note) where only an extension's format is offered.
+    /// The image that a texture shows; none (with a note) where no source is known.
     std::optional<int> image_of(int texture) {
         const int image = model_.textures[static_cast<size_t>(texture)].source;
         if (image >= 0) return image;
-        ++loader_.ignored["{} texture{|s} without a PNG or JPEG source ignored"];
+        ++loader_.ignored["{} texture{|s} ignored that {names|name} no image, or only in an extension that is unknown"];
         return std::nullopt;
     }
 

@@ -320,6 +320,17 @@ TEST(GltfBad, Images) {
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
 }
 
+TEST(GltfBad, TexturesWithoutAnImage) {
+    const TempFolder folder;
+    json gltf = textured("gone.png");
+    gltf["textures"][0] = json::object();
+    EXPECT_EQ(all_notes(load(folder, gltf)),
+              "1 texture ignored that names no image, or only in an extension that is unknown\n");
+    gltf["extensionsUsed"] = {"EXT_texture_future"};
+    gltf["textures"][0] = {{"extensions", {{"EXT_texture_future", {{"source", 0}}}}}};
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "1 texture ignored that names no image, or only in an extension");
+}
+
 TEST(GltfBad, BracesInNamesStayInNotes) {
     const TempFolder folder;
     EXPECT_MENTIONS(all_notes(load(folder, textured("{a|b}{}.png"))), "the image file {a|b}{}.png is missing");
