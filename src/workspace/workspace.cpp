@@ -121,18 +121,11 @@ MadePicture Workspace::render_on_device(const RenderSettings& settings, const Pr
     RenderResult result = renderer_for(settings).render(settings, progress);
     device_->check_validation();
     MadePicture made;
-    PictureStats& stats = made.stats;
-    stats.machine = machine_of(*device_);
-    stats.width = result.width;
-    stats.height = result.height;
-    stats.triangles = scene_.triangles();
-    stats.box = scene_.bounds();
-    stats.origin = scene_.scene().origin;
-    stats.rays = result.rays;
-    stats.render = std::move(result.stats);
+    made.stats = picture_stats(machine_of(*device_), scene_, result);
+    made.stats.render = std::move(result.stats);
     for (const RayCostField& field : kRayCostFields)
-        stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
-    note_cubes(stats.render);
+        made.stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
+    note_cubes(made.stats.render);
     made.picture = std::move(result);
     return made;
 }
