@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/frame_pattern.h"
 #include "cli/manifest.h"
@@ -129,10 +130,9 @@ Json Run::stats(size_t left_alone) const {
 std::string Run::summary(size_t left_alone) const {
     const Sequence& s = sequence_;
     const double seconds = seconds_since(start_);
-    std::string text =
-        fmt::format("{} frame{} of {} to {}", done_, done_ == 1 ? "" : "s", s.frames.first, s.frames.end - 1);
+    std::string text = fmt::format("{} of {} to {}", counted("{} frame{|s}", done_), s.frames.first, s.frames.end - 1);
     if (s.shard.count > 1) text += fmt::format(" (shard {}/{})", s.shard.index, s.shard.count);
-    if (left_alone > 0) text += fmt::format(", {} were there already", left_alone);
+    if (left_alone > 0) text += counted(", {} {was|were} there already", left_alone);
     text += fmt::format(", {}x{}", arguments_.size.x, arguments_.size.y);
     text += fmt::format("; {:.2f} s in all", seconds);
     if (done_ > 0) text += fmt::format(", {:.3g} frames/s", done_ / seconds);

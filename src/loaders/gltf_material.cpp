@@ -235,7 +235,7 @@ class MaterialReader {
         const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
         const auto known = [&](int mode) {
             const std::optional<Texture::Wrap> wrap = wrap_mode(mode);
-            if (!wrap) ++loader_.ignored["{} unknown wrap modes read as REPEAT (VALUE_NOT_IN_LIST)"];
+            if (!wrap) ++loader_.ignored["{} unknown wrap mode{|s} read as REPEAT (VALUE_NOT_IN_LIST)"];
             return wrap.value_or(Texture::Wrap::repeat);
         };
         const Texture::Wrap u = known(sampler.wrapS), v = known(sampler.wrapT);

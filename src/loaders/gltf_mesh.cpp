@@ -124,7 +124,7 @@ class PrimitiveReader {
             (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with("TEXCOORD_"));
         if (!is_unit && !is_quantized)
             ++loader_.ignored[fmt::format(
-                "{{}} attributes {} of a type that the format does not have there used as they are "
+                "{{}} attribute{{|s}} {} of a type that the format does not have there used as {{it is|they are}} "
                 "(MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT)",
                 name)];
     }
@@ -235,7 +235,9 @@ class PrimitiveReader {
         for (glm::vec2& uv : uvs)
             if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
                 uv = glm::vec2(0);
-                ++loader_.ignored["{} texture coordinates that are not finite count as 0 (ACCESSOR_INVALID_FLOAT)"];
+                ++loader_.ignored
+                      ["{} texture coordinate{|s} that {is|are} not finite {counts|count} as 0 "
+                       "(ACCESSOR_INVALID_FLOAT)"];
             }
         return uvs;
     }

@@ -226,7 +226,7 @@ class BinaryStl {
         if (file_.left() > 0)
             scene_.notes.push_back(fmt::format("{} after the last of {} {} no effect",
                                                counted("{} byte{|s}", file_.left()), counted("{} facet{|s}", count),
-                                               file_.left() == 1 ? "has" : "have"));
+                                               counted("{has|have}", file_.left())));
         add_colors();
         return std::move(mesh_);
     }
