@@ -79,16 +79,15 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     const Glb glb = is_glb ? split_glb(bytes) : Glb{bytes, {}};
     json checked;
     try {
-        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, faults_);
+        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, ignored_);
     } catch (const json::exception& error) {
         fail("{}: not a glTF file: {}", name_, printable(error.what(), 200));
     }
     for (const json& node : checked["nodes"])
         if (node.contains("matrix") &&
             (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
-            ++faults_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
-    extensions_ = take_extensions(checked);
-    ignored_ = extensions_.ignored;
+            ++ignored_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
+    extensions_ = take_extensions(checked, ignored_);
     hide_unknown_types(checked);
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);
@@ -116,14 +115,14 @@ GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) {
         else if (type == binary_chunk && glb.binary.empty())
             glb.binary = chunk;
         else if (type == binary_chunk || type == json_chunk)
-            ++faults_["{} chunk{|s} of the GLB beyond the first of their kind ignored (GLB_DUPLICATE_CHUNK)"];
+            ++ignored_["{} chunk{|s} of the GLB beyond the first of their kind ignored (GLB_DUPLICATE_CHUNK)"];
         if (type == binary_chunk && chunks > 1 && glb.binary.data() == chunk.data())
-            ++faults_["{} binary chunk{|s} that {is|are} not the second of the GLB used (GLB_UNEXPECTED_BIN_CHUNK)"];
+            ++ignored_["{} binary chunk{|s} that {is|are} not the second of the GLB used (GLB_UNEXPECTED_BIN_CHUNK)"];
         at += 8 + ((size + 3) & ~size_t(3));
     }
     if (chunks == 0) fail("{}: truncated GLB: no chunk", name_);
     if (at < length)
-        ++faults_["{} GLB ends amid a chunk's header, which is ignored (GLB_UNEXPECTED_END_OF_CHUNK_HEADER)"];
+        ++ignored_["{} GLB ends amid a chunk's header, which is ignored (GLB_UNEXPECTED_END_OF_CHUNK_HEADER)"];
     return glb;
 }
 

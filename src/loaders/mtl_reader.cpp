@@ -17,8 +17,7 @@ constexpr std::array<std::string_view, 3> normal_maps = {"norm", "map_kn", "map_
 
 class MtlReader {
   public:
-    MtlReader(std::string_view text, const std::string& name, MtlTally& tally)
-        : text_(text), name_(name), tally_(tally) {}
+    MtlReader(std::string_view text, const std::string& name, Tally& tally) : text_(text), name_(name), tally_(tally) {}
 
     std::vector<MtlMaterial> read() {
         if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
@@ -124,7 +123,7 @@ class MtlReader {
 
     std::string_view text_;
     const std::string& name_;
-    MtlTally& tally_;
+    Tally& tally_;
     std::vector<MtlMaterial> out_;
 };
 
@@ -155,8 +154,7 @@ const Option* find_option(std::string_view word) {
 
 class TextureOptions {
   public:
-    TextureOptions(MtlTexture& out, MtlTally& tally, bool is_normal)
-        : out_(out), tally_(tally), is_normal_(is_normal) {}
+    TextureOptions(MtlTexture& out, Tally& tally, bool is_normal) : out_(out), tally_(tally), is_normal_(is_normal) {}
 
     /// Takes an option with its values off the front; false: no option stands there.
     bool take(std::string_view& rest) {
@@ -218,18 +216,18 @@ class TextureOptions {
     }
 
     MtlTexture& out_;
-    MtlTally& tally_;
+    Tally& tally_;
     bool is_normal_;
     bool needs_name_ = true;
 };
 
 }  // namespace
 
-std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, MtlTally& tally) {
+std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, Tally& tally) {
     return MtlReader(text, name, tally).read();
 }
 
-MtlTexture parse_mtl_texture(std::string_view rest, MtlTally& tally, bool is_normal) {
+MtlTexture parse_mtl_texture(std::string_view rest, Tally& tally, bool is_normal) {
     MtlTexture out;
     TextureOptions reader(out, tally, is_normal);
     while (reader.take(rest)) {
