@@ -154,8 +154,7 @@ class PrimitiveReader {
                 if (corners[i] >= out.positions.size())
                     fail("{}: index {} is {}, the primitive has {} vertices", where_, i, corners[i],
                          out.positions.size());
-            const uint32_t type = loader_.file.accessor(from_.indices).component_type;
-            const uint32_t restart = type == 5121 ? UINT8_MAX : type == 5123 ? UINT16_MAX : UINT32_MAX;
+            const auto restart = static_cast<uint32_t>(loader_.file.accessor(from_.indices).largest());
             if (std::find(corners.begin(), corners.end(), restart) != corners.end())
                 ++loader_.ignored
                       ["{} primitive{|s} whose largest index would restart {it|them} drawn with that vertex "

@@ -44,6 +44,18 @@ bool is_truncated_jpeg(std::span<const uint8_t> bytes) {
 
 }  // namespace
 
+Texture texture_of(const void* pixels, int width, int height, bool deep) {
+    Texture texture;
+    texture.width = static_cast<uint32_t>(width);
+    texture.height = static_cast<uint32_t>(height);
+    const auto take = [&](auto& texels) {
+        texels.resize(size_t(texture.width) * texture.height);
+        std::memcpy(texels.data(), pixels, texels.size() * sizeof texels[0]);
+    };
+    deep ? take(texture.deep_texels) : take(texture.texels);
+    return texture;
+}
+
 void check_image(std::span<const uint8_t> bytes, const std::string& where) {
     int width = 0, height = 0, channels = 0;
     if (bytes.empty()) fail("{}: the image is empty", where);
@@ -69,15 +81,7 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, D
     if (!pixels) fail_image(where, bytes.size());
     if (is_truncated_jpeg(bytes))
         fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
-    Texture texture;
-    texture.width = static_cast<uint32_t>(width);
-    texture.height = static_cast<uint32_t>(height);
-    const auto take = [&](auto& texels) {
-        texels.resize(size_t(texture.width) * texture.height);
-        std::memcpy(texels.data(), pixels.get(), texels.size() * sizeof texels[0]);
-    };
-    deep ? take(texture.deep_texels) : take(texture.texels);
-    return texture;
+    return texture_of(pixels.get(), width, height, deep);
 }
 
 const char* foreign_image_type(std::span<const uint8_t> bytes) {
