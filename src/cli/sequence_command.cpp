@@ -219,7 +219,8 @@ void render_pictures(const RenderArguments& a, const Sequence& sequence) {
             write_picture(made.picture, a.aovs, pattern.file(frame));
         });
     } catch (const Interrupted&) {
-        fail("interrupted after {} of {} frames: the same command with --resume goes on", run.done(), frames.size());
+        fail("interrupted after {} of {}: the same command with --resume goes on", run.done(),
+             counted("{} frame{|s}", frames.size()));
     }
     if (!a.stats.empty()) write_json(a.stats, run.stats(left_alone));
     fmt::print("{}: {}\n", a.output.string(), run.summary(left_alone));
@@ -258,7 +259,8 @@ void render_video(const RenderArguments& a, const Sequence& sequence) {
             if (fs::file_size(temporary) == 0) fail("ffmpeg wrote nothing and did not say why; no video was written");
         });
     } catch (const Interrupted&) {
-        fail("interrupted after {} of {} frames: no video was written; run it again", run.done(), frames.size());
+        fail("interrupted after {} of {}: no video was written; run it again", run.done(),
+             counted("{} frame{|s}", frames.size()));
     }
     if (!a.stats.empty()) write_json(a.stats, run.stats(0));
     fmt::print("{}: {:.2f} s at {} frames/s; {}\n", a.output.string(), double(frames.size()) / sequence.fps,

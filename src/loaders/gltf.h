@@ -8,7 +8,6 @@
 #include <tuple>
 #include <vector>
 
-#include "base/text.h"
 #include "loaders/gltf_file.h"
 #include "loaders/load.h"
 #include "scene/origin.h"

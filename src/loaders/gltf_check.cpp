@@ -295,7 +295,7 @@ class Checker {
             case Kind::numbers:
                 expect(in.is_array(), in, where, "an array");
                 if (member.length && in.size() != member.length)
-                    fail("{}: has {} numbers, needs {}", where, in.size(), member.length);
+                    fail("{}: has {}, needs {}", where, counted("{} number{|s}", in.size()), member.length);
                 return each(in, where, [&](const json& element) { return ranged(number(element, where), member); });
             case Kind::whole:
                 return whole(in, where, INT_MAX);

@@ -96,7 +96,7 @@ GltfFile::GltfFile(const std::filesystem::path& path)
 // tinygltf splits the container again, but only after we have looked: its own check of the binary chunk is 8 bytes off,
 // and the JSON has to be checked first.
 GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) {
-    if (all.size() < 20) fail("{}: truncated GLB: {} bytes, the headers need 20", name_, all.size());
+    if (all.size() < 20) fail("{}: truncated GLB: {}, the headers need 20", name_, counted("{} byte{|s}", all.size()));
     const auto u32 = [&](size_t offset) { return load_as<uint32_t>(all.data() + offset); };
     if (u32(4) != 2) fail("{}: GLB version {} is not supported; convert it to glTF 2.0", name_, u32(4));
     const size_t length = u32(8);
@@ -159,7 +159,8 @@ void GltfFile::take_uris(json& checked, std::optional<size_t> glb_bytes) {
         } else if (!is_chunk || (is_fallback && *glb_bytes < source.length)) {
             source.has_data = false;  // legal where nothing reads it, see bytes_of()
         } else if (*glb_bytes < source.length) {
-            fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", at, source.length, *glb_bytes);
+            fail("{}: the buffer is too short: byteLength is {}, {}", at, source.length,
+                 counted("there {is|are} {} byte{|s}", *glb_bytes));
         }
         if (!is_chunk || !source.has_data) buffer["uri"] = std::to_string(buffer_sources_.size());
         if (!source.has_data) buffer["byteLength"] = 1;  // tinygltf insists on bytes
@@ -224,8 +225,8 @@ Bytes GltfFile::read_buffer(size_t index) {
     if (!has_data) return Bytes(1);
     Bytes bytes = read_uri(uri, where("buffers", index) + ".uri");
     if (bytes.size() < length)
-        fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", where("buffers", index), length,
-             bytes.size());
+        fail("{}: the buffer is too short: byteLength is {}, {}", where("buffers", index), length,
+             counted("there {is|are} {} byte{|s}", bytes.size()));
     bytes.resize(length);
     return bytes;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/text.h"
 #include "loaders/gltf.h"
 #include "loaders/gltf_draco.h"
 #include "scene/normals.h"
@@ -131,7 +132,8 @@ class PrimitiveReader {
 
     void check_count(const char* name, size_t count, const Primitive& out) const {
         if (count != out.positions.size())
-            fail("{}: {} has {} elements, POSITION has {}", where_, name, count, out.positions.size());
+            fail("{}: {} has {}, POSITION has {}", where_, name, counted("{} element{|s}", count),
+                 out.positions.size());
     }
 
     void check_positions(const Primitive& out) const {
@@ -152,8 +154,8 @@ class PrimitiveReader {
             corners = loader_.file.integers(from_.indices);
             for (size_t i = 0; i < corners.size(); ++i)
                 if (corners[i] >= out.positions.size())
-                    fail("{}: index {} is {}, the primitive has {} vertices", where_, i, corners[i],
-                         out.positions.size());
+                    fail("{}: index {} is {}, the primitive has {}", where_, i, corners[i],
+                         counted("{} vert{ex|ices}", out.positions.size()));
             const auto restart = static_cast<uint32_t>(loader_.file.accessor(from_.indices).largest());
             if (std::find(corners.begin(), corners.end(), restart) != corners.end())
                 ++loader_.ignored

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "loaders/webp.h"
 
 // The decoder is compiled into this file alone: no other module sees stb's names.
@@ -29,8 +30,8 @@ namespace {
 
 [[noreturn]] void fail_image(const std::string& where, size_t size) {
     const char* reason = stbi_failure_reason();
-    fail("{}: {} bytes that are no PNG, JPEG or WebP image ({}); repair or re-export the image", where, size,
-         reason ? reason : "unknown");
+    fail("{}: {} no PNG, JPEG or WebP image ({}); repair or re-export the image", where,
+         counted("{} byte{|s} that {is|are}", size), reason ? reason : "unknown");
 }
 
 /// stb_image fills the missing part of a cut-off JPEG with grey; a whole one ends with EOI (FF D9) after its last SOS
@@ -80,7 +81,8 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, D
         &stbi_image_free);
     if (!pixels) fail_image(where, bytes.size());
     if (is_truncated_jpeg(bytes))
-        fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
+        fail("{}: the JPEG image is truncated after {}; repair or re-export it", where,
+             counted("{} byte{|s}", bytes.size()));
     return texture_of(pixels.get(), width, height, deep);
 }
 

@@ -238,8 +238,8 @@ class Converter {
         const uint32_t begin = begin_of(face), end = end_of(face);
         for (uint32_t corner = begin; corner < end; ++corner)
             if (mesh_.corners[corner] >= mesh_.positions.size())
-                fail("{}: polygon {} has index {}, the file has {} vertices", where_, face, mesh_.corners[corner],
-                     mesh_.positions.size());
+                fail("{}: polygon {} has index {}, the file has {}", where_, face, mesh_.corners[corner],
+                     counted("{} vert{ex|ices}", mesh_.positions.size()));
         if (end - begin < 3) {
             ++counts_.too_few_corners;
             return;

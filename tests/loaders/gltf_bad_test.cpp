@@ -209,7 +209,7 @@ TEST(GltfBad, IndicesAndCounts) {
     EXPECT_MENTIONS(line, "index 2 is 4, the primitive has 4 vertices");
     gltf = square();
     primitive(gltf)["attributes"]["NORMAL"] = add_accessor(gltf, pack<float>({0, 0, 1}), 5126, "VEC3", 1);
-    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 elements, POSITION has 4");
+    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 element, POSITION has 4");
     gltf = square();
     primitive(gltf)["material"] = 0;
     EXPECT_MENTIONS(error_of(folder, gltf), "material");
