@@ -209,7 +209,7 @@ TEST(GltfBad, IndicesAndCounts) {
     EXPECT_MENTIONS(line, "index 2 is 4, the primitive has 4 vertices");
     gltf = square();
     primitive(gltf)["attributes"]["NORMAL"] = add_accessor(gltf, pack<float>({0, 0, 1}), 5126, "VEC3", 1);
-    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 elements, POSITION has 4");
+    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 element, POSITION has 4");
     gltf = square();
     primitive(gltf)["material"] = 0;
     EXPECT_MENTIONS(error_of(folder, gltf), "material");
@@ -318,6 +318,25 @@ TEST(GltfBad, Images) {
     gltf["materials"][0] = {{"normalTexture", {{"index", 0}}}};
     gltf["materials"][0]["normalTexture"]["index"] = 1;
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
+}
+
+TEST(GltfBad, TexturesWithoutAnImage) {
+    const TempFolder folder;
+    json gltf = textured("gone.png");
+    gltf["textures"][0] = json::object();
+    EXPECT_EQ(all_notes(load(folder, gltf)),
+              "1 texture ignored that names no image, or only in an extension that is unknown\n");
+    gltf["extensionsUsed"] = {"EXT_texture_future"};
+    gltf["textures"][0] = {{"extensions", {{"EXT_texture_future", {{"source", 0}}}}}};
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "1 texture ignored that names no image, or only in an extension");
+}
+
+TEST(GltfBad, BracesInNamesStayInNotes) {
+    const TempFolder folder;
+    EXPECT_MENTIONS(all_notes(load(folder, textured("{a|b}{}.png"))), "the image file {a|b}{}.png is missing");
+    json gltf = square();
+    gltf["nodes"][0]["extensions"]["EXT_{a|b}{}"] = json::object();
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "EXT_{a|b}{}: without effect");
 }
 
 }  // namespace

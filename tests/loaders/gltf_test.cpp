@@ -294,7 +294,7 @@ TEST(Gltf, OddValuesOfMaterialsAndLightsSaySo) {
         EXPECT_TRUE(has_note(material(bad), "VALUE_NOT_IN_RANGE")) << bad;
     EXPECT_TRUE(has_note(material(R"({"extensions": {"KHR_materials_volume": {"thicknessFactor": 1}}})"),
                          "KHR_materials_volume: read all the same (UNDECLARED_EXTENSION)"));
-    EXPECT_TRUE(has_note(material(R"({"extensions": {"ACME_{}_paint": {}}})"), "ACME__paint: without effect"));
+    EXPECT_TRUE(has_note(material(R"({"extensions": {"ACME_{}_paint": {}}})"), "ACME_{}_paint: without effect"));
 
     const auto light = [&](const char* text) {
         json gltf = square();

@@ -281,6 +281,20 @@ TEST(CutRays, AreNotedAboveATenthOfAPercent) {
     EXPECT_NE(text.find("--bounces 8 goes further"), std::string::npos) << text;
     EXPECT_EQ(Error(cut_note(rays, 16)).line("--").find("goes further"), std::string::npos) << "there is no more";
     EXPECT_NE(Error(cut_note(rays, 10)).line("--").find("--bounces 16"), std::string::npos);
+    rays.primary = 10;
+    rays.cut_refraction = 1;
+    EXPECT_EQ(Error(cut_note(rays, 16)).line("--"),
+              "1 ray (10.0 % of the camera's) would pass through more glass than --bounces 16 follows: it sees the "
+              "environment there");
+}
+
+TEST(CrowdedRays, AreCounted) {
+    RayCounts rays;
+    EXPECT_EQ(crowded_note(rays), "");
+    rays.crowded = 1;
+    EXPECT_EQ(crowded_note(rays).find("1 ray was in more than"), 0u) << crowded_note(rays);
+    rays.crowded = 2;
+    EXPECT_EQ(crowded_note(rays).find("2 rays were in more than"), 0u) << crowded_note(rays);
 }
 
 /// Five panes of glass, one behind the other, at the default of four bounces.
