@@ -71,7 +71,4 @@ std::string meshopt_stream_1(const std::string& bytes, size_t stride, const std:
 /// Values as a filter of that name stores them: four to an element, for EXPONENTIAL as many as there are.
 std::string meshopt_filtered(const std::vector<float>& values, size_t stride, const std::string& filter, int bits);
 
-/// A file of one mesh, as binary glTF: views of the buffer are those of the JSON.
-std::string glb_of(const json& gltf, const std::string& binary);
-
 }  // namespace peelray::testing
