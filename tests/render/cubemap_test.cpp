@@ -21,9 +21,7 @@ Environment direction_image() {
 
 /// A room seen from inside, whose light at p is light(p).
 Primitive room(float half, const std::function<glm::vec3(glm::vec3)>& light) {
-    Primitive walls = box(glm::vec3(-half), glm::vec3(half));
-    for (auto& n : walls.normals) n = -n;
-    for (auto& t : walls.triangles) std::swap(t.y, t.z);
+    Primitive walls = inside_out(box(glm::vec3(-half), glm::vec3(half)));
     for (const glm::vec3& p : walls.positions) walls.colors.push_back(glm::vec4(light(p), 1));
     return walls;
 }
