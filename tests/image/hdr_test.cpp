@@ -17,7 +17,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <cstring>
 #include <limits>
 

@@ -3,9 +3,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 
 #pragma GCC diagnostic push

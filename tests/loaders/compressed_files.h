@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <map>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include <webp/encode.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "loaders/animated_files.h"
