@@ -26,6 +26,8 @@
 //                     one where every lane runs every branch (software devices)
 //   bool PEELRAY_ACCEPT(uint triangle, vec2 uv)   false: the triangle has a hole there, the hit does not count (`exact` only:
 //                     other samples are made where there is a surface)
+//   void PEELRAY_VISIT(uint instance)   told of each instance before the ray looks for hits in it, for hooks that must know which one a
+//                     triangle belongs to
 //   bool PEELRAY_SHOWN(uint triangle, bool front)   false: the triangle is not there for a ray that meets this side of it; front: that from
 //                     which its corners go counter-clockwise in the body's space. Asked by every hit test, of samples by PEELRAY_TRIANGLE.
 //                     A macro that looks at `front` last costs nothing where all triangles show both sides.
@@ -325,8 +327,13 @@ bool peelrayNormalise(inout PeelrayRay ray, out float scale) {
 #include "peelray/peelray_pixels.glsl"
 #endif
 
-/// The triangle of an instance that does not count.
-uint peelrayOwn(uint instance, uvec2 skip) { return skip.x == instance ? skip.y : PEELRAY_MISS; }
+/// The triangle of an instance that does not count; asked before the ray visits the instance.
+uint peelrayOwn(uint instance, uvec2 skip) {
+#ifdef PEELRAY_VISIT
+    PEELRAY_VISIT(instance);
+#endif
+    return skip.x == instance ? skip.y : PEELRAY_MISS;
+}
 
 /// Nearest hit in one instance's cube, in the order in which the cubes are stored.
 void peelrayTraceCube(uint instance, PeelrayRay ray, uint skip, PeelrayOptions options, inout PeelrayHit hit) {

@@ -38,9 +38,9 @@ struct GpuMaterial {
     float thickness;     ///< of a volume, world units; rays measure it, cube maps cannot
     float alpha;         ///< of the base colour
     float alpha_cutoff;  ///< 0: opaque
-    vec3 f0;             ///< reflectance of the dielectric part at normal incidence; one value but for MATERIAL_SCHLICK
+    vec3 f0;             ///< MATERIAL_SCHLICK: reflectance of the dielectric part at normal incidence; else: the fit's constant
     float f90;           ///< MATERIAL_SCHLICK: at grazing angles
-    vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of split_sum.h
+    vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of (1 - cosine) in split_sum.h
 };
 SHARED_SIZE(GpuMaterial, 152);
 #define MATERIAL_THIN 1u

@@ -14,6 +14,6 @@ PeelrayHit mediaNearest(PeelrayRay ray, uvec2 skip) {
     return PeelrayHit(hit.t, hit.triangle, hit.instance, vec2(hit.u, hit.v));
 }
 
-void mediaForget(uint triangle) {}
+void mediaForget(uint instance, uint triangle) {}
 
 vec2 mediaWeights(PeelrayRay ray, PeelrayHit hit) { return hit.uv; }

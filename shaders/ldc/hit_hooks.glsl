@@ -4,6 +4,7 @@
 #include "common/material.glsl"
 #ifdef HITS_FORGET
 #include "path/media_forget.glsl"
+#define PEELRAY_VISIT(instance) media_visited = instance
 #define PEELRAY_ACCEPT(triangle, uv) (!mediaForgotten(triangle) && (!masked || alphaPresent(triangle, uv)))
 #else
 #define PEELRAY_ACCEPT(triangle, uv) (!masked || alphaPresent(triangle, uv))

@@ -37,20 +37,25 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ou
     const float alpha = m.roughness * m.roughness;
     const vec3 h = microfacet(s, view, alpha, state.seed);
     const float cosine = clamp(dot(view, h), 0.0, 1.0);
-    const vec3 dielectric = interfaceReflectance(m, face, cosine);
-    const bool mirror = m.roughness < MIRROR_ROUGHNESS;
+    const bool mirror = m.roughness < MIRROR_ROUGHNESS, averaged = !samplesMicrofacets() && !mirror;
+    vec3 dielectric = vec3(0);
+    if (!averaged || transparent) dielectric = interfaceReflectance(m, face, cosine);
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = mirror ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
 
     vec3 reflected = reflect(incoming, h);
-    vec3 weight = mix(dielectric, fresnelSchlick(s.base_color, 1.0, cosine), m.metallic);
-    if (samplesMicrofacets() && !mirror) {
-        weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
-    } else if (!mirror) {
-        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+    vec3 weight;
+    if (averaged && !transparent) {
         const vec4 means = splitSum(m.roughness, cosine);
-        weight = transparent ? weight * means.x : mix(dielectricAlbedo(m, means), metalAlbedo(s.base_color, means), m.metallic);
+        weight = mix(dielectricAlbedo(m, means), metalAlbedo(s.base_color, means), m.metallic);
+    } else {
+        weight = mix(dielectric, fresnelSchlick(s.base_color, 1.0, cosine), m.metallic);
+        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+        if (averaged)
+            weight *= splitSum(m.roughness, cosine).x;
+        else if (!mirror)
+            weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
     }
     reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0);
     decide(reflection, state.weight, EFFECT_REFLECTION);

@@ -7,8 +7,8 @@
 // Defined by the shader that includes this.
 /// What the ray hits first, not the surface `skip`; not what mediaForget() was told of, where MEDIA_FORGETS says so.
 PeelrayHit mediaNearest(PeelrayRay ray, uvec2 skip);
-/// The triangle does not count any more for this ray.
-void mediaForget(uint triangle);
+/// The instance's triangle does not count any more for this ray.
+void mediaForget(uint instance, uint triangle);
 /// Barycentric weights of a hit.
 vec2 mediaWeights(PeelrayRay ray, PeelrayHit hit);
 
@@ -140,7 +140,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
             mediaAdd(group, hit, m.surface, m.at.before);
             near = mediaNear(ray, hit, m.surface);
             looked = 0u;
-            mediaForget(hit.triangle);
+            mediaForget(hit.instance, hit.triangle);
             continue;
         }
         if (hit.triangle != PEELRAY_MISS) {
@@ -155,7 +155,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
                 m.beyond = max(m.beyond, hit.t);
                 m.last = uvec2(hit.instance, hit.triangle);
                 if (!MEDIA_FORGETS) near.tmin = hit.t;
-                mediaForget(hit.triangle);
+                mediaForget(hit.instance, hit.triangle);
                 if (group.count < WALLS_TOGETHER && looked < 2u * WALLS_TOGETHER) continue;
             }
         }

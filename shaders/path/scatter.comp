@@ -124,6 +124,8 @@ vec3 arrivingLight(uint index, Surface s, Material m, vec3 view, SurfaceId from,
 /// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
 vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
     rays = sky_rays = 0u;
+    // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
+    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0)) return vec3(0);
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;

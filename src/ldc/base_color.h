@@ -20,6 +20,10 @@ struct BaseColorBuffers {
     Buffer triangle_materials;   ///< uint32 per triangle
     uint32_t first_tangent = 0;  ///< in `uvs`, counted in vec2
     bool textured = false;       ///< some triangle's material has textures beside the base colour's
+    bool specified = false;      ///< some material states its reflectance (MATERIAL_SCHLICK)
+
+    /// Of the shaders that evaluate materials.
+    Constants constants() const { return {{"textured", textured}, {"specified", specified}}; }
 
     uint64_t bytes() const {
         return materials.bytes() + texture_infos.bytes() + texels.bytes() + uvs.bytes() + colors.bytes() +

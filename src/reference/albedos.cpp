@@ -8,19 +8,20 @@
 namespace peelray {
 namespace {
 
-/// Of GGX by quadrature over its microfacets: D·G1(v)·G1(l)·F·(v·h)/(v.z), in rings that follow D·h.z.
+/// Of GGX by quadrature over its microfacets: D·G1(v)·G1(l)·F·(v·h)/(v.z), in rings that follow D·h.z and
+/// crowd where the microfacets are steep: equal shares of them err by up to 0.05 at grazing angles.
 Albedos::Means integrate(const Optics& m, double cosine) {
-    constexpr int rings = 64, sectors = 48;
+    constexpr int rings = 128, sectors = 64;
     const double alpha = m.roughness * m.roughness, a2 = alpha * alpha, sine = std::sqrt(1 - cosine * cosine);
     Albedos::Means sum;
     for (int i = 0; i < rings; i++) {
-        const double u = (i + 0.5) / rings, up2 = (1 - u) / (1 + (a2 - 1) * u), up = std::sqrt(up2);
+        const double t = (i + 0.5) / rings, u = 1 - t * t, up2 = (1 - u) / (1 + (a2 - 1) * u), up = std::sqrt(up2);
         const double across = std::sqrt(1 - up2);
         for (int k = 0; k < sectors; k++) {
             const double v_h = sine * across * std::cos(optics::pi * (k + 0.5) / sectors) + cosine * up;
             const double n_l = 2 * v_h * up - cosine;
             if (v_h <= 0 || n_l <= 0) continue;
-            const double share = optics::ggx_masking(cosine, alpha) * optics::ggx_masking(n_l, alpha) * v_h /
+            const double share = optics::ggx_masking(cosine, alpha) * optics::ggx_masking(n_l, alpha) * v_h * 2 * t /
                                  (cosine * up * rings * sectors);
             const double facing = std::min(v_h, 1.0), grazing = optics::fresnel_schlick(glm::dvec3(0), 1, facing).x;
             sum.dielectric += share * m.face_reflectance(facing, false);

@@ -19,13 +19,15 @@ void set_reflectance(GpuMaterial& m, const Material& material) {
     const double root = (m.ior - 1.0) / (m.ior + 1.0), f0 = infinite ? 1 : root * root;
     m.f0 = glm::min(float(f0) * material.specular_color, glm::vec3(1)) * material.specular;
     m.f90 = material.specular;
-    const bool specified = infinite || material.specular != 1 || material.specular_color != glm::vec3(1) ||
-                           material.specular_texture || material.specular_color_texture;
-    if (specified) m.flags |= MATERIAL_SCHLICK;
-    if (specified)
+    if (infinite || material.specular != 1 || material.specular_color != glm::vec3(1) || material.specular_texture ||
+        material.specular_color_texture) {
+        m.flags |= MATERIAL_SCHLICK;
         m.fresnel_fit = float(f0) * material.specular_color;
-    else
-        m.fresnel_fit = fresnel_fit(m.ior);
+    } else {
+        const glm::vec4 fit = fresnel_fit(m.ior);
+        m.f0 = glm::vec3(fit.x);
+        m.fresnel_fit = glm::vec3(fit.y, fit.z, fit.w);
+    }
 }
 
 GpuMaterial gpu_material(const Material& material, bool colored) {
@@ -151,6 +153,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             out.textured = true;
             if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
         }
+        out.specified |= (m.flags & MATERIAL_SCHLICK) != 0;
         materials.push_back(m);
     }
     out.materials = upload(device, commands, "materials", materials);

@@ -16,19 +16,19 @@ double reflectance(double cosine, double ior) {
 
 }  // namespace
 
-glm::vec3 fresnel_fit(double ior) {
+glm::vec4 fresnel_fit(double ior) {
     // Least squares. Weighted by the cosine: most microfacets that a view sees face it.
     constexpr int samples = 100;
-    glm::dmat3 products(0);
-    glm::dvec3 right(0);
+    glm::dmat4 products(0);
+    glm::dvec4 right(0);
     for (int i = 0; i < samples; i++) {
         const double cosine = (i + 0.5) / samples, m = 1 - cosine, weight = cosine + 0.02;
-        const glm::dvec3 powers(std::pow(m, SPLIT_SUM_FLAT_EXPONENT), std::pow(m, SPLIT_SUM_SCHLICK_EXPONENT),
+        const glm::dvec4 powers(1, std::pow(m, SPLIT_SUM_FLAT_EXPONENT), std::pow(m, SPLIT_SUM_SCHLICK_EXPONENT),
                                 std::pow(m, SPLIT_SUM_STEEP_EXPONENT));
         products += weight * glm::outerProduct(powers, powers);
-        right += weight * (reflectance(cosine, ior) - reflectance(1, ior)) * powers;
+        right += weight * reflectance(cosine, ior) * powers;
     }
-    return glm::vec3(glm::inverse(products) * right);
+    return glm::vec4(glm::inverse(products) * right);
 }
 
 }  // namespace peelray

@@ -99,6 +99,7 @@ struct Renderer::Impl {
 
     void prepare(const RenderSettings& settings);
     void prepare_tracer();
+    glm::uvec2 camera_media() const;
     void prepare_view();
     void prepare_maps();
     void prepare_queues();
@@ -126,12 +127,15 @@ void Renderer::Impl::prepare(const RenderSettings& settings) {
     prepare_queues();
 }
 
-/// The tracer that the settings ask for, or none where no effect needs any; not yet built.
+/// The tracer that the settings ask for, or none where neither an effect nor the media before what is seen need any;
+/// not yet built.
 void Renderer::Impl::prepare_tracer() {
     f.settings.cubes = choose_automatically(triangles_of(assembly), f.settings);
     TracerChoice choice = f.settings;
     if (choice.tracer == Tracer::khr) f.device.check_ray_tracing();
-    if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings)) choice.tracer = Tracer::none;
+    if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings) && !f.scene.layered &&
+        camera_media() == glm::uvec2(0))
+        choice.tracer = Tracer::none;
     if (!f.tracer || made_for != choice) {
         f.tracer.reset();  // first, so that both never live at once
         f.tracer = make_tracer(
@@ -150,6 +154,14 @@ void Renderer::Impl::prepare_tracer() {
     }
 }
 
+/// What the camera is in.
+glm::uvec2 Renderer::Impl::camera_media() const {
+    const Camera& camera = f.settings.camera;
+    if (camera.orthographic_height > 0) return {};  // its rays have no one start
+    const MediaStack stack = f.scene.media_at(source, moment, camera.eye);
+    return {stack.low, stack.high};
+}
+
 /// Bands of the picture, and its constants.
 void Renderer::Impl::prepare_view() {
     const RenderSettings& settings = f.settings;
@@ -160,11 +172,7 @@ void Renderer::Impl::prepare_view() {
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper));
     f.tracer->describe(frame);
-    // Orthographic rays have no one start.
-    if (settings.camera.orthographic_height <= 0) {
-        const MediaStack stack = f.scene.media_at(source, moment, settings.camera.eye);
-        frame.camera_media = {stack.low, stack.high};
-    }
+    frame.camera_media = camera_media();
     // A band's largest queue entries are rays and branches, or the walls of media; bands keep each queue below what the
     // device binds, with room to grow.
     const uint64_t entry = f.layered() ? sizeof(MediaWall) : sizeof(Ray);

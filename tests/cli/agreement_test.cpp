@@ -144,9 +144,7 @@ TEST_P(Agreement, WithTheReference) {
     const auto exact = pictures[0]["difference"], planar = pictures[1]["difference"];
     fmt::print("  exact: FLIP {:.5f}, {:.4f} % of pixels off; planar: FLIP {:.5f}\n", exact["flip"].get<double>(),
                exact["share_different"].get<double>() * 100, planar["flip"].get<double>());
-    // The masked leaves reach 0.0021 since rough surfaces look their reflectance up in a table that the reference
-    // integrates.
-    EXPECT_LE(exact["flip"], words[0].starts_with("builtin:leaves") ? 0.0025 : 0.002);
+    EXPECT_LE(exact["flip"], 0.002);
     EXPECT_LE(exact["share_different"], 0.001);
     EXPECT_LE(planar["flip"], 0.02);
     // The rays themselves are the same: what is traced is decided alike.

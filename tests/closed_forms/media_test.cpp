@@ -91,6 +91,22 @@ TEST_F(MediaTest, BodiesOfOneMediumAreOneBody) {
     }
 }
 
+TEST_F(MediaTest, InstancesOfOneBodyAreOneBody) {
+    // Their walls that coincide are the same triangles, in two instances.
+    const glm::dvec3 up(0, 1, 0), mirror(1, 1, -1);
+    for (const glm::dmat4& other : {glm::scale(glm::dmat4(1), mirror), glm::rotate(glm::dmat4(1), kPi, up)}) {
+        SCOPED_TRACE(other[0][0]);
+        Stage stage;
+        add_lit_wall(stage);
+        stage.add(plate(0.7f, 0), liquid(1.5f));
+        Node node = stage.scene.nodes.back();
+        node.local = other;
+        stage.scene.nodes.push_back(node);
+        tally_layers(render(stage, black, settings_for(kOblique, 48)), kOblique, {{0.7, 1.5, kLiquid}, {-0.7, 1}})
+            .expect(0, 1500);
+    }
+}
+
 /// Through one face and out of the other, both normal to z, with a slanted wall y = z between glass and liquid: at 45
 /// degrees glass would reflect totally into air, not into the liquid.
 TEST_F(MediaTest, NoAirBetweenWallsThatTouch) {
@@ -148,6 +164,20 @@ TEST_F(MediaTest, ACameraUnderWater) {
     tally_layers(render(stage, black, settings_for(camera, 48)), camera, {{0.6, 1.5}, {0.2, 1.33, kLiquid}, {-1, 1}},
                  {2, 1.33, kLiquid})
         .expect(0, 1500);
+}
+
+TEST_F(MediaTest, WaterBeforeTheCameraIsNoEffect) {
+    // Nothing is reflected, refracted or in shadow: what the camera is in still absorbs.
+    Stage stage;
+    add_lit_wall(stage);
+    stage.add(plate(5, -4, 8), liquid());
+    const Camera camera = perspective({0.4f, 0.3f, 2}, {0.2f, 0.1f, 0}, 40);
+    RenderSettings settings = settings_for(camera, 32);
+    settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
+    tally(render(stage, black, settings), camera, 2e-3, [](const ViewRay& ray) {
+        const glm::dvec3 at = ray.at_plane(2, -2);
+        return wall_light(at) * glm::exp(-kLiquid * glm::length(at - ray.origin));
+    }).expect(0, 1024);
 }
 
 TEST_F(MediaTest, NoAirUnderWhatStandsOnATable) {

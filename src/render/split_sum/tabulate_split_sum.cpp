@@ -24,7 +24,8 @@ double masking(double cosine, double alpha) {
     return 2 * cosine / (cosine + std::sqrt(alpha * alpha + (1 - alpha * alpha) * cosine * cosine));
 }
 
-/// The mean over visible normals (Heitz, JCGT 2018), by the midpoint rule on the disc that the samples come from.
+/// The mean over visible normals (Heitz, JCGT 2018), by the midpoint rule on the disc that the samples come from, with
+/// rings that crowd at its rim: there a smooth surface seen obliquely has its edge.
 Powers mean(double alpha, double cosine) {
     constexpr int rings = 96, sectors = 96;
     const double sine = std::sqrt(1 - cosine * cosine), stretched = std::hypot(alpha * sine, cosine);
@@ -33,7 +34,8 @@ Powers mean(double alpha, double cosine) {
     for (int i = 0; i < rings; i++)
         for (int k = 0; k < sectors; k++) {
             // One half of the disc: the other mirrors it.
-            const double radius = std::sqrt((i + 0.5) / rings), angle = std::numbers::pi * (k + 0.5) / sectors;
+            const double t = (i + 0.5) / rings, radius = std::sqrt(1 - t * t),
+                         angle = std::numbers::pi * (k + 0.5) / sectors;
             const double across = radius * std::sin(angle), whole = std::sqrt(1 - across * across);
             const double along = (1 - warp) * whole + warp * radius * std::cos(angle);
             const double up = std::sqrt(std::max(0.0, whole * whole - along * along));
@@ -45,7 +47,7 @@ Powers mean(double alpha, double cosine) {
             const double n_l = 2 * v_h * hz / length - cosine;
             if (n_l <= 0) continue;
             const Powers p = powers(v_h);
-            for (size_t j = 0; j < 4; j++) sum[j] += p[j] * masking(n_l, alpha) / (rings * sectors);
+            for (size_t j = 0; j < 4; j++) sum[j] += p[j] * masking(n_l, alpha) * 2 * t / (rings * sectors);
         }
     return sum;
 }
