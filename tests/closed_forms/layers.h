@@ -54,10 +54,10 @@ inline Seen through(const ViewRay& ray, const std::vector<Layer>& layers, Layer 
     return seen;
 }
 
-/// Compares from both sides: what is reflected to and fro may only add, at most `share` of its bound. `start`: what the
-/// camera is in.
+/// Compares from both sides: what is reflected to and fro may only add, at most its bound of light as bright as
+/// `brightness`. `start`: what the camera is in.
 inline Tally tally_layers(const Picture& picture, const Camera& camera, const std::vector<Layer>& layers,
-                          const Layer& start = {0, 1}, double share = 2, double tolerance = 2e-3) {
+                          const Layer& start = {0, 1}, double brightness = 2, double tolerance = 2e-3) {
     Tally result;
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
@@ -65,7 +65,7 @@ inline Tally tally_layers(const Picture& picture, const Camera& camera, const st
             const Seen seen = through(ray, layers, start);
             if (seen.off) continue;
             const glm::dvec3 got = radiance_at(picture, x, y);
-            const double more = seen.more * share;
+            const double more = seen.more * brightness;
             bool right = true;
             for (int c = 0; c < 3; c++)
                 right &= got[c] >= seen.light[c] - tolerance && got[c] <= seen.light[c] + more + tolerance;
