@@ -15,9 +15,9 @@ TEST(GltfMaterial, MissingImagesWithoutTexelsInThePictureAreNoted) {
     gltf["images"] = {{{"uri", "gone.png"}}};
     gltf["textures"] = {{{"source", 0}}};
     gltf["materials"] = json::parse(R"([{"normalTexture": {"index": 0}, "emissiveTexture": {"index": 0},
-        "emissiveFactor": [1, 2, 3], "pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}}])");
+        "emissiveFactor": [1, 0.5, 0.25], "pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}}])");
     const Scene scene = load(folder, gltf);
-    expect_near(scene.materials.at(0).emissive, {1, 2, 3});
+    expect_near(scene.materials.at(0).emissive, {1, 0.5f, 0.25f});
     ASSERT_EQ(scene.notes.size(), 1u) << all_notes(scene);
     EXPECT_MENTIONS(scene.notes[0], "3 textures other than of the base colour left out");
 }
