@@ -26,7 +26,7 @@ struct Layer {
 struct Seen {
     glm::dvec3 light;
     double more = 0;
-    bool off = false;  ///< beside the backdrop
+    bool off = false;  ///< beside the part of the backdrop where no colour is negative
 };
 inline Seen through(const ViewRay& ray, const std::vector<Layer>& layers, Layer medium = {0, 1}) {
     const glm::dvec2 tangential = glm::dvec2(ray.direction) * medium.ior;  // times the index: the same everywhere
@@ -50,7 +50,7 @@ inline Seen through(const ViewRay& ray, const std::vector<Layer>& layers, Layer 
     }
     advance(-2);
     seen.light *= wall_light(at);
-    seen.off = std::abs(at.x) > 5.7 || std::abs(at.y) > 5.7;
+    seen.off = std::abs(at.x) > 4.9 || std::abs(at.y) > 4.9;
     return seen;
 }
 
