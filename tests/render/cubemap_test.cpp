@@ -118,16 +118,18 @@ TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
         stage.add(room(10, [](glm::vec3) { return glm::vec3(1); }), unlit({1, 1, 1}));
         RenderSettings settings = settings_for(perspective({0.3f, 0.5f, 2}, {0, 0, 0}, 24), 48);
         settings.tracer = Tracer::none;
-        // However many samples: a lookup is of the whole lobe.
+        const RenderResult want = render(alone, white, settings);
+        // However many samples: a lookup is of the whole lobe. Of several, `want` shows the middle alone, and at the
+        // rim reflectance changes within a pixel.
         for (uint32_t spp : {1u, 4u}) {
             settings.spp = spp;
             if (spp == 1 && roughness > 0.5f) continue;  // nothing would be traced, so there is no probe
-            const RenderResult want = render(alone, white, settings), got = cubemap(stage, black, settings);
+            const RenderResult got = cubemap(stage, black, settings), ball = render(alone, black, settings);
             EXPECT_EQ(got.stats.maps.probes, 1u);
             Tally result;
             for (size_t i = 0; i < want.radiance.size(); i++)
-                if (want.radiance[i].w == 1)  // where all samples see the ball, of which the room tells nothing
-                    result.add(near(glm::dvec3(got.radiance[i]), glm::dvec3(want.radiance[i]), 2e-3),
+                if (ball.radiance[i].w == 1)  // all samples: in the room, coverage does not tell what they see
+                    result.add(near(glm::dvec3(got.radiance[i]), glm::dvec3(want.radiance[i]), spp == 1 ? 2e-3 : 0.03),
                                [&] { return text(glm::dvec3(got.radiance[i])) + text(glm::dvec3(want.radiance[i])); });
             result.expect(0, 1000);
         }
