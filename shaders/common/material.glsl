@@ -43,11 +43,10 @@ bool mayTransmit(uint triangle) {
 // --- What shading asks for ---
 
 #ifdef MATERIAL_EVALUATION
-// The scene has textures other than of the base colour. Without them their values are constants, and a material is
-// read again wherever it is needed rather than kept.
-layout(constant_id = 20) const bool textured = false;
-// Some material is MATERIAL_SCHLICK.
-layout(constant_id = 21) const bool specified = false;
+// MATERIALS_*: what some material of the scene is. What none is costs nothing: without textures other than of the base
+// colour a material is read again wherever it is needed rather than kept.
+layout(constant_id = 20) const uint material_kinds = 0u;
+const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {
@@ -115,7 +114,7 @@ TextureFactors textureFactors(uint material, uvec3 corners, vec3 weights) {
 Material evaluate(uint material, TextureFactors f) {
     const GpuMaterial r = materials[material];
     Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, r.flags);
-    if (!specified) m.flags &= ~MATERIAL_SCHLICK;  // for the sake of the compiler
+    if (!specified) m.flags &= ~MATERIAL_SCHLICK;  // none has it: the compiler may know
     if (textured) {
         m.metallic *= f.metallic;
         m.emissive *= f.emissive;

@@ -49,6 +49,9 @@ SHARED_SIZE(GpuMaterial, 152);
 #define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
 #define MATERIAL_SCHLICK 16u      // reflectance between f0 and f90; else by the index of refraction
 #define MATERIAL_TEXTURED 32u     // by more than a base colour and a normal
+/// Of all materials of a scene:
+#define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
+#define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
 
 /// A texture as materials use it.
 struct GpuTexture {

@@ -19,11 +19,10 @@ struct BaseColorBuffers {
     Buffer colors;               ///< vec4 per vertex; read where a material is MATERIAL_COLORED
     Buffer triangle_materials;   ///< uint32 per triangle
     uint32_t first_tangent = 0;  ///< in `uvs`, counted in vec2
-    bool textured = false;       ///< some triangle's material has textures beside the base colour's
-    bool specified = false;      ///< some material states its reflectance (MATERIAL_SCHLICK)
+    uint32_t kinds = 0;          ///< MATERIALS_* (common/material.h), of the materials that triangles have
 
     /// Of the shaders that evaluate materials.
-    Constants constants() const { return {{"textured", textured}, {"specified", specified}}; }
+    Constant constant() const { return {"material_kinds", kinds}; }
 
     uint64_t bytes() const {
         return materials.bytes() + texture_infos.bytes() + texels.bytes() + uvs.bytes() + colors.bytes() +

@@ -22,7 +22,7 @@ void AovPictures::render(FrameState& f, Aovs& aovs) {
     for (uint32_t row = 0; row < settings.height; row += f.bands.rows()) {
         const LevelParams p = level_params(f, 0, 0, row);
         record_primary(f.commands, device, f.scene, f.view.target, f.queues, p, f.view.by_number());
-        f.commands.run(device.pass("aov", f.scene.base_colors.constants()),
+        f.commands.run(device.pass("aov", {f.scene.base_colors.constant()}),
                        surface_bindings(f.scene, f.view.target.frame,
                                         {{"rays", f.queues.level(0).rays},
                                          {"hits", f.queues.level(0).hits},

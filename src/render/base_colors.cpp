@@ -150,10 +150,10 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             m.textures[k] = used[i] ? textures.add(use, is_data, assembly.uvs.size()) : -1;
             m.channels |= use.channel << 2 * k;
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
-            out.textured = true;
+            out.kinds |= MATERIALS_TEXTURED;
             if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
         }
-        out.specified |= (m.flags & MATERIAL_SCHLICK) != 0;
+        if (used[i] && m.flags & MATERIAL_SCHLICK) out.kinds |= MATERIALS_SPECIFIED;
         materials.push_back(m);
     }
     out.materials = upload(device, commands, "materials", materials);

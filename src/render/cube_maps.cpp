@@ -191,7 +191,7 @@ void CubeMaps::record_blurred(Commands& commands, const Probe& probe, const Buff
 void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const PathLevel& level,
                               const LevelParams& params) {
     const Groups groups = groups_for(params.capacity, 64);
-    commands.run(device_.pass("cubemap_scatter", scene_.base_colors.constants()),
+    commands.run(device_.pass("cubemap_scatter", {scene_.base_colors.constant()}),
                  surface_bindings(scene_, frame,
                                   {{"environment", scene_.environment},
                                    {"rays", level.rays},
@@ -203,7 +203,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"split_sum", scene_.split_sum},
                                    Binding::if_used("probes", current_)}),
                  params, groups);
-    commands.run(device_.pass("cubemap_shadow", scene_.base_colors.constants()),
+    commands.run(device_.pass("cubemap_shadow", {scene_.base_colors.constant()}),
                  surface_bindings(scene_, frame,
                                   {{"rays", level.rays},
                                    {"hits", level.hits},

@@ -34,10 +34,10 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           Binding::if_used("media_ranks", scene.media_ranks),
                           Binding::if_used("next_media", next.media),
                           Binding::if_used("shadow_media", queues.lights().media)});
-    Constants constants = scene.base_colors.constants();
-    constants.insert(constants.end(),
-                     {{"camera", camera}, {"by_number", camera && f.view.by_number()}, {"layered", layered}});
-    const Pass& pass = f.device.pass("scatter", constants);
+    const Pass& pass = f.device.pass("scatter", {{"camera", camera},
+                                                 {"by_number", camera && f.view.by_number()},
+                                                 {"layered", layered},
+                                                 scene.base_colors.constant()});
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else
@@ -73,7 +73,7 @@ void record_trace(FrameState& f, uint32_t level) {
     if (f.counter) queue.counting = &counting.emplace(f.counter->level(level));
     if (f.layered())
         f.tracer->trace_layered(f.commands, {queue, rays.hits, rays.media, rays.walls, false,
-                                             f.scene.base_colors.constants(), surfaces_of(f)});
+                                             f.scene.base_colors.constant(), surfaces_of(f)});
     else
         f.tracer->trace(f.commands, queue, rays.hits, {});
 }
@@ -83,7 +83,7 @@ void record_camera_walls(FrameState& f, const LevelParams& p) {
     record_primary(f.commands, f.device, f.scene, f.view.target, f.queues, p, f.view.by_number());
     const PathLevel& rays = f.queues.level(0);
     f.tracer->trace_layered(f.commands, {RayQueue{rays.rays, nullptr, p.capacity}, rays.hits, rays.media, rays.walls,
-                                         true, f.scene.base_colors.constants(), surfaces_of(f)});
+                                         true, f.scene.base_colors.constant(), surfaces_of(f)});
 }
 
 void record_shadows(FrameState& f) {
@@ -92,7 +92,7 @@ void record_shadows(FrameState& f) {
     std::optional<CountBuffers> counting;
     if (f.counter) queue.counting = &counting.emplace(f.counter->lights());
     f.tracer->shadow(f.commands, {queue, lights.light, f.scene.has_glass, f.layered() ? &lights.media : nullptr,
-                                  f.scene.base_colors.constants(), surfaces_of(f)});
+                                  f.scene.base_colors.constant(), surfaces_of(f)});
 }
 
 void record_gather(FrameState& f, const LevelParams& p) {

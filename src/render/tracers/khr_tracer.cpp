@@ -52,9 +52,8 @@ std::vector<Binding> KhrTracer::with_surfaces(const std::vector<Binding>& surfac
 
 void KhrTracer::trace_layered(Commands& commands, const LayeredRays& rays) {
     const RayQueue& queue = rays.rays;
-    Constants constants = rays.materials;
-    constants.push_back({"camera", rays.camera});
-    const RayPass& pass = khr_pass(device_, "trace_media_khr", KhrRays::nearest, triangles_, constants);
+    const RayPass& pass =
+        khr_pass(device_, "trace_media_khr", KhrRays::nearest, triangles_, {{"camera", rays.camera}, rays.materials});
     const KhrTraceParams p{queue.count, queue.counters != nullptr, queue.counter, queue.skip != nullptr};
     std::vector<Binding> bindings = with_surfaces(rays.surfaces);
     bindings.push_back({"rays", queue.rays});
@@ -72,7 +71,7 @@ void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
                                    : shadows.glass ? "trace_shadow_khr_glass"
                                                    : "trace_shadow_khr",
                                    shadows.glass ? KhrRays::nearest_to_light : KhrRays::occluded, triangles_,
-                                   shadows.glass ? shadows.materials : Constants{});
+                                   shadows.glass ? Constants{shadows.materials} : Constants{});
     std::vector<Binding> bindings = with_surfaces(shadows.surfaces);
     bindings.push_back(Binding::if_used("shadow_media", shadows.media));
     bindings.push_back({"shadow_rays", shadows.rays.rays});

@@ -111,7 +111,7 @@ void LdcTracer::trace_layered(Commands& commands, const LayeredRays& rays) {
     bindings.insert(bindings.end(), rays.surfaces.begin(), rays.surfaces.end());
     Constants constants = traversal_constants(device_, traced(), choice().hit, queue.counting != nullptr);
     constants.push_back({"camera", rays.camera});
-    constants.insert(constants.end(), rays.materials.begin(), rays.materials.end());
+    constants.push_back(rays.materials);
     const Pass& pass = device_.pass(choice().layout.by_pixel() ? "trace_media_pixels" : "trace_media", constants);
     if (queue.groups)
         commands.run_indirect(pass, bindings, params(queue), *queue.groups, queue.groups_offset);
@@ -134,7 +134,7 @@ void LdcTracer::shadow(Commands& commands, const ShadowRays& shadows) {
     else
         bindings = with_hit_materials(bindings, triangles_);
     Constants constants = traversal_constants(device_, traced(), choice().hit, queue.counting != nullptr);
-    if (shadows.glass) constants.insert(constants.end(), shadows.materials.begin(), shadows.materials.end());
+    if (shadows.glass) constants.push_back(shadows.materials);
     const std::string through = shadows.media ? "_media" : shadows.glass ? "_glass" : "";
     const Pass& pass =
         device_.pass("trace_shadow" + through + (choice().layout.by_pixel() ? "_pixels" : ""), constants);

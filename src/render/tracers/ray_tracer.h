@@ -29,7 +29,7 @@ struct ShadowRays {
     const Buffer& light;  ///< vec3 each: what may arrive along the ray; once it is traced, what does
     bool glass;           ///< surfaces in the way may tint the light
     const Buffer* media;  ///< MediaStack each, where the rays start; null: media do not overlap
-    Constants materials;  ///< of shaders that evaluate these surfaces' materials
+    Constant materials;   ///< of shaders that evaluate these surfaces' materials
     /// What shading reads beside triangles and instances, all of it only if used: glass tints by its base colour.
     std::vector<Binding> surfaces;
 };
@@ -41,7 +41,7 @@ struct LayeredRays {
     const Buffer& media;            ///< MediaStack each: where the ray starts
     const Buffer& walls;            ///< MediaWall each: what is met there
     bool camera;                    ///< `hits` holds what the rays hit first, and they start in Frame::camera_media
-    Constants materials;            ///< as in ShadowRays
+    Constant materials;             ///< as in ShadowRays
     std::vector<Binding> surfaces;  ///< as in ShadowRays
 };
 
