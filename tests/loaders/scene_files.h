@@ -124,17 +124,23 @@ inline const Primitive& only_primitive(const Scene& scene) {
 }
 
 /// The error's line; a test failure where nothing is thrown or the message is no single line.
-inline std::string error_of(const std::string& file) {
+template <typename Work>
+std::string error_from(Work&& work) {
     try {
-        load_scene(file);
+        work();
     } catch (const Error& error) {
         const std::string line = error.what();
         EXPECT_FALSE(line.empty());
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
         return line;
     }
-    ADD_FAILURE() << file << " loaded, an error was expected";
+    ADD_FAILURE() << "no error";
     return "";
+}
+
+inline std::string error_of(const std::string& file) {
+    SCOPED_TRACE(file);
+    return error_from([&] { load_scene(file); });
 }
 
 inline std::string error_of(const TempFolder& folder, const json& gltf) {
