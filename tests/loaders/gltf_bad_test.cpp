@@ -24,8 +24,7 @@ TEST(GltfBad, MissingEmptyAndForeignFiles) {
 TEST(GltfBad, TruncatedGlb) {
     const TempFolder folder;
     const std::string text = R"({"asset": {"version": "2.0"}}   )";
-    const std::string whole =
-        "glTF" + pack<uint32_t>({2, uint32_t(20 + text.size()), uint32_t(text.size()), 0x4E4F534A}) + text;
+    const std::string whole = glb(text, "");
     EXPECT_MENTIONS(error_of(folder.write("whole.glb", whole)), "no triangles");
     for (size_t size = 1; size < whole.size(); ++size) error_of(folder.write("cut.glb", whole.substr(0, size)));
     std::string damaged = whole;
@@ -37,13 +36,10 @@ TEST(GltfBad, TruncatedGlb) {
 TEST(GltfBad, BinaryChunkLongerThanTheGlb) {
     const TempFolder folder;
     const std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":8}]})";
-    const auto glb = [&](uint32_t size) {
-        return "glTF" + pack<uint32_t>({2, uint32_t(12 + 8 + text.size() + 8 + 8), uint32_t(text.size()), 0x4E4F534A}) +
-               text + pack<uint32_t>({size, 0x004E4942, 0, 0});
-    };
-    ASSERT_EQ(text.size() % 4, 0u);
-    EXPECT_MENTIONS(error_of(folder.write("whole.glb", glb(8))), "no triangles");
-    EXPECT_MENTIONS(error_of(folder.write("long.glb", glb(16))), "truncated");
+    std::string file = glb(text, std::string(8, '\0'));
+    EXPECT_MENTIONS(error_of(folder.write("whole.glb", file)), "no triangles");
+    file[file.size() - 16] = 16;  // the chunk's length
+    EXPECT_MENTIONS(error_of(folder.write("long.glb", file)), "truncated");
 }
 
 // Every value of a good file in turn replaced by one of another type, or by a number that is too large.
@@ -261,14 +257,6 @@ TEST(GltfBad, RequiredExtensions) {
         gltf["extensionsRequired"] = {"KHR_materials_ior", name};
         EXPECT_MENTIONS(error_of(folder, gltf), name);
     }
-}
-
-json textured(const std::string& uri) {
-    json gltf = square();
-    gltf["images"] = {{{"uri", uri}}};
-    gltf["textures"] = {{{"source", 0}}};
-    gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
-    return gltf;
 }
 
 TEST(GltfBad, Images) {

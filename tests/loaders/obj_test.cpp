@@ -3,7 +3,6 @@
 #include "loaders/obj.h"
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
 #include "loaders/load.h"
