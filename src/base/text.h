@@ -54,4 +54,11 @@ inline std::string counted(std::string_view sentence, uint64_t count) {
     return line;
 }
 
+/// printable() text out of a file, for a sentence of counted(): its braces are no places to fill.
+inline std::string escaped(std::string_view text, size_t limit = 120) {
+    std::string line;
+    for (const char c : printable(text, limit)) line.append(c == '{' || c == '}' ? 2 : 1, c);
+    return line;
+}
+
 }  // namespace peelray

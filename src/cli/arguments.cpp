@@ -167,7 +167,6 @@ SettingList options_of(TraceArguments& a) {
               .form = "FILE.npy"});
     add_setting(list, a.any_hit,
                 {.name = "any-hit", .help = "stop at any hit instead of looking for the nearest: for shadow rays"});
-    add_double_sided(list, a.double_sided, "");
     add_file(list, a.stats, {.name = "stats", .help = "also write times and memory as JSON"});
     add_scene(list, a);
     add_setting(list, a.repeat,

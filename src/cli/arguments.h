@@ -37,7 +37,7 @@ struct CompareArguments : PictureArguments {
 struct TraceArguments : SceneArguments {
     std::string scene;
     std::filesystem::path rays, hits, stats, counters;
-    bool any_hit = false, double_sided = false;
+    bool any_hit = false;
     uint32_t repeat = 1;
     TracingArguments tracing;
     DeviceArguments device;

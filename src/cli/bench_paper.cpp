@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "base/progress.h"
+#include "base/text.h"
 #include "bench/paper_bench.h"
 #include "cli/bench.h"
 #include "cli/bench_output.h"
@@ -55,10 +56,10 @@ static Json row_json(const PaperRow& row) {
 
 static std::string paper_table_head(const BenchArguments& a, const Machine& device) {
     std::string text = fmt::format(
-        "{}, driver {}, Vulkan {}, commit {}; {}x{} pixels, {} frame{} each, blocks of {}x{}; GPU milliseconds, "
+        "{}, driver {}, Vulkan {}, commit {}; {}x{} pixels, {} each, blocks of {}x{}; GPU milliseconds, "
         "medians\n\n",
-        device.name, device.driver, device.api_version, build_commit(), a.size.x, a.size.y, a.repeat,
-        a.repeat == 1 ? "" : "s", a.block.x, a.block.y);
+        device.name, device.driver, device.api_version, build_commit(), a.size.x, a.size.y,
+        counted("{} frame{|s}", a.repeat), a.block.x, a.block.y);
     text +=
         "| scene | triangles | builder | traversal | hits | LDIs | object | layers | A | least to most | B | least to "
         "most | "

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/progress.h"
+#include "base/text.h"
 #include "bench/embree_contender.h"
 #include "bench/ray_bench.h"
 #include "cli/bench.h"
@@ -177,10 +178,10 @@ void run_ray_bench(const BenchArguments& a) {
     RayBench bench(a, print_note);
     const Machine machine = bench.machine();
     BenchOutput output(a, ray_head_json(a, machine), ray_table_foot());
-    output.say(fmt::format("{}, driver {}, Vulkan {}, commit {}; {} on {} CPU threads; {} runs each\n\n{}",
-                           machine.name, machine.driver, machine.api_version, build_commit(),
-                           EmbreeContender::version(), std::thread::hardware_concurrency(), a.repeat,
-                           ray_table_head(bench.kinds())));
+    output.say(fmt::format("{}, driver {}, Vulkan {}, commit {}; {} on {}; {} each\n\n{}", machine.name, machine.driver,
+                           machine.api_version, build_commit(), EmbreeContender::version(),
+                           counted("{} CPU thread{|s}", std::thread::hardware_concurrency()),
+                           counted("{} run{|s}", a.repeat), ray_table_head(bench.kinds())));
     Progress bar("measuring", double(bench.rows()), "rows");
     std::vector<RayRow> rows;
     output.run(

@@ -255,10 +255,11 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
     report.title = a.scene;
     report.command = compare_command(a);
     report.reference = choose_reference(entries);
-    report.facts = {{"triangles", fmt::format("{}", scene.triangles())},
-                    {"picture", fmt::format("{} × {}, {} sample{} per pixel, {} bounces", a.size.x, a.size.y, a.spp,
-                                            a.spp == 1 ? "" : "s", a.bounces)},
-                    {"program", fmt::format("peelray {}", build_commit())}};
+    report.facts = {
+        {"triangles", fmt::format("{}", scene.triangles())},
+        {"picture", fmt::format("{} × {}, {}, {}", a.size.x, a.size.y, counted("{} sample{|s} per pixel", a.spp),
+                                counted("{} bounce{|s}", a.bounces))},
+        {"program", fmt::format("peelray {}", build_commit())}};
     if (!is_reflective(scene.scene(), a.spp))
         report.notes.push_back(
             "nothing in this scene reflects or refracts enough to be traced: the tracers can differ in shadows only");
@@ -276,7 +277,7 @@ Report report_of(const CompareArguments& a, const std::vector<Entry>& entries, c
 
 void print(const CompareArguments& a, const Report& report) {
     const size_t count = report.pictures.size();
-    fmt::print("{}: {} picture{}", a.output.string(), count, count == 1 ? "" : "s");
+    fmt::print("{}: {}", a.output.string(), counted("{} picture{|s}", count));
     if (count > 1) fmt::print(", compared with '{}'", one_line(report.pictures[report.reference].name));
     fmt::print("\n");
     for (const ReportPicture& picture : report.pictures) {

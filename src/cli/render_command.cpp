@@ -25,10 +25,9 @@ std::string summary_of(const PictureStats& stats) {
     std::string text;
     if (stats.has_cubes()) text = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
-        text = fmt::format(", {} cube maps of {}² texels a face, {} shadow maps", s.maps.probes, s.maps.face,
-                           s.maps.shadows.maps);
-    if (s.tracer == Tracer::khr)
-        text = fmt::format(", {} acceleration structure{}", s.structures.bodies, s.structures.bodies == 1 ? "" : "s");
+        text = fmt::format(", {} of {}² texels a face, {}", counted("{} cube map{|s}", s.maps.probes), s.maps.face,
+                           counted("{} shadow map{|s}", s.maps.shadows.maps));
+    if (s.tracer == Tracer::khr) text = ", " + counted("{} acceleration structure{|s}", s.structures.bodies);
     if (s.timed)
         text += fmt::format("; GPU {:.2f} ms ({} {:.2f} ms)", s.frame_ms,
                             s.tracer == Tracer::cubemap ? "maps"
@@ -41,10 +40,10 @@ std::string summary_of(const PictureStats& stats) {
 /// What a reader of the terminal wants to know, once.
 void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
     const Picture& picture = made.picture;
-    const double rays = double(picture.rays.primary + picture.rays.secondary());
+    const uint64_t rays = picture.rays.primary + picture.rays.secondary();
     fmt::print("{}: {}x{}, {}, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width, picture.height,
                counted("{} triangle{|s}", triangles),
-               rays < 1e5 ? fmt::format("{} rays", rays) : fmt::format("{:.1f} M rays", rays * 1e-6),
+               rays < 100'000 ? counted("{} ray{|s}", rays) : fmt::format("{:.1f} M rays", double(rays) * 1e-6),
                summary_of(made.stats), seconds, made.stats.machine.name);
 }
 

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/commands.h"
 #include "cli/frame_pattern.h"
 #include "cli/manifest.h"
@@ -129,10 +130,9 @@ Json Run::stats(size_t left_alone) const {
 std::string Run::summary(size_t left_alone) const {
     const Sequence& s = sequence_;
     const double seconds = seconds_since(start_);
-    std::string text =
-        fmt::format("{} frame{} of {} to {}", done_, done_ == 1 ? "" : "s", s.frames.first, s.frames.end - 1);
+    std::string text = fmt::format("{} of {} to {}", counted("{} frame{|s}", done_), s.frames.first, s.frames.end - 1);
     if (s.shard.count > 1) text += fmt::format(" (shard {}/{})", s.shard.index, s.shard.count);
-    if (left_alone > 0) text += fmt::format(", {} were there already", left_alone);
+    if (left_alone > 0) text += counted(", {} {was|were} there already", left_alone);
     text += fmt::format(", {}x{}", arguments_.size.x, arguments_.size.y);
     text += fmt::format("; {:.2f} s in all", seconds);
     if (done_ > 0) text += fmt::format(", {:.3g} frames/s", done_ / seconds);
@@ -219,7 +219,8 @@ void render_pictures(const RenderArguments& a, const Sequence& sequence) {
             write_picture(made.picture, a.aovs, pattern.file(frame));
         });
     } catch (const Interrupted&) {
-        fail("interrupted after {} of {} frames: the same command with --resume goes on", run.done(), frames.size());
+        fail("interrupted after {} of {}: the same command with --resume goes on", run.done(),
+             counted("{} frame{|s}", frames.size()));
     }
     if (!a.stats.empty()) write_json(a.stats, run.stats(left_alone));
     fmt::print("{}: {}\n", a.output.string(), run.summary(left_alone));
@@ -258,7 +259,8 @@ void render_video(const RenderArguments& a, const Sequence& sequence) {
             if (fs::file_size(temporary) == 0) fail("ffmpeg wrote nothing and did not say why; no video was written");
         });
     } catch (const Interrupted&) {
-        fail("interrupted after {} of {} frames: no video was written; run it again", run.done(), frames.size());
+        fail("interrupted after {} of {}: no video was written; run it again", run.done(),
+             counted("{} frame{|s}", frames.size()));
     }
     if (!a.stats.empty()) write_json(a.stats, run.stats(0));
     fmt::print("{}: {:.2f} s at {} frames/s; {}\n", a.output.string(), double(frames.size()) / sequence.fps,

@@ -13,7 +13,6 @@
 #include "image/npy.h"
 #include "loaders/load.h"
 #include "render/ray_scene.h"
-#include "scene/sidedness.h"
 #include "workspace/posed_scene.h"
 #include "workspace/render_settings.h"
 
@@ -128,8 +127,7 @@ void run_trace(const TraceArguments& a) {
         if (!more.empty()) outputs.push_back(more);
     check_outputs(outputs, {a.scene, a.rays});
     std::vector<RayRecord> rays = read_rays(a.rays);
-    Scene scene = load_scene(a.scene, {a.variant, a.point_size.value_or(0)});
-    if (a.double_sided) show_both_sides(scene);
+    Scene scene = load_scene(a.scene, {a.variant, a.point_size.value_or(0), a.double_sided});
     rays = in_scene(std::move(rays), scene.origin);
     const Moment rest = at_rest(scene);
     const Geometry geometry = flatten(scene, rest);

@@ -14,7 +14,7 @@ constexpr double width = 760, height = 460, left = 72, right = 178, top = 44, bo
 constexpr std::array<const char*, 8> colors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                "#E69F00", "#56B4E9", "#000000", "#999999"};
 
-std::string escaped(const std::string& text) {
+std::string svg_text(const std::string& text) {
     std::string out;
     for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
     return out;
@@ -58,7 +58,7 @@ class Axis {
 };
 
 std::string text_at(double x, double y, const std::string& text, const char* more) {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, more, escaped(text));
+    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, more, svg_text(text));
 }
 
 std::string grid(const Axis& x, const Axis& y) {

@@ -21,7 +21,7 @@ std::string_view report_template();
 namespace {
 
 /// Text for HTML, in an element or a quoted attribute. Control characters are not allowed in HTML at all.
-std::string escaped(std::string_view text) {
+std::string html_text(std::string_view text) {
     std::string out;
     for (const char c : text) {
         if (c == '&')
@@ -112,7 +112,7 @@ std::string metric_table(const Pictures& pictures, size_t reference) {
                         metric.meaning, metric.label, metric.higher_is_better ? "↑" : "↓");
     for (size_t i = 0; i < pictures.size(); ++i) {
         if (i == reference) continue;
-        rows += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(pictures[i].name));
+        rows += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(pictures[i].name));
         for (const Metric& metric : metrics) {
             const std::optional<Difference>& difference = pictures[i].difference;
             const bool best = difference && (*difference).*metric.value == best_value(metric, pictures, reference);
@@ -130,7 +130,7 @@ std::string metric_table(const Pictures& pictures, size_t reference) {
         "<table id=\"metrics\"><thead><tr><th "
         "scope=\"col\">Picture</th>{}</tr></thead>\n<tbody>{}</tbody></table></div>\n"
         "<details><summary>What the numbers mean</summary><dl class=\"meanings\">{}</dl>{}</details></section>",
-        escaped(pictures[reference].name), head, rows, meanings,
+        html_text(pictures[reference].name), head, rows, meanings,
         pictures.size() > 2 ? "<p>Bold: the best of the pictures.</p>" : "");
 }
 
@@ -143,13 +143,13 @@ std::string facts_table(const Pictures& pictures) {
     if (labels.empty()) return "";
     std::string head, rows;
     for (const ReportPicture& picture : pictures)
-        head += fmt::format("<th scope=\"col\">{}</th>", escaped(picture.name));
+        head += fmt::format("<th scope=\"col\">{}</th>", html_text(picture.name));
     for (const std::string_view label : labels) {
-        rows += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(label));
+        rows += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(label));
         for (const ReportPicture& picture : pictures) {
             const auto fact = std::find_if(picture.facts.begin(), picture.facts.end(),
                                            [&](const ReportFact& f) { return f.first == label; });
-            rows += fmt::format("<td>{}</td>", fact == picture.facts.end() ? "–" : escaped(fact->second));
+            rows += fmt::format("<td>{}</td>", fact == picture.facts.end() ? "–" : html_text(fact->second));
         }
         rows += "</tr>\n";
     }
@@ -166,7 +166,7 @@ std::string words(std::string_view command) {
     for (;;) {
         const size_t space = command.find(' ');
         const std::string_view word = command.substr(0, space);
-        if (!word.empty()) out += fmt::format("<span>{}</span>", escaped(word));
+        if (!word.empty()) out += fmt::format("<span>{}</span>", html_text(word));
         if (space == std::string_view::npos) return out;
         out += ' ';
         command.remove_prefix(space + 1);
@@ -180,7 +180,7 @@ std::string command_list(const Report& report) {
         items += fmt::format(
             "<li><span class=\"name\">{0}</span><div class=\"command\"><code>{1}</code><button type=\"button\" "
             "class=\"copy js\" aria-label=\"Copy the command of {0}\">Copy</button></div></li>\n",
-            escaped(name), words(command));
+            html_text(name), words(command));
     };
     for (const ReportPicture& picture : report.pictures) add(picture.name, picture.command);
     add("this report", report.command);
@@ -191,13 +191,13 @@ std::string command_list(const Report& report) {
 std::string fact_list(const std::vector<ReportFact>& facts) {
     std::string items;
     for (const auto& [label, value] : facts)
-        items += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escaped(label), escaped(value));
+        items += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", html_text(label), html_text(value));
     return items.empty() ? "" : fmt::format("<dl class=\"facts\">{}</dl>", items);
 }
 
 std::string note_list(const std::vector<std::string>& notes) {
     std::string items;
-    for (const std::string& note : notes) items += fmt::format("<li>{}</li>", escaped(note));
+    for (const std::string& note : notes) items += fmt::format("<li>{}</li>", html_text(note));
     return items.empty() ? "" : fmt::format("<ul class=\"notes\" aria-label=\"Notes\">{}</ul>", items);
 }
 
@@ -210,7 +210,7 @@ std::string figure(const std::filesystem::path& path, std::string_view kind, con
     return fmt::format(
         "<li><figure data-kind=\"{}\"><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\"><figcaption>{}</figcaption>"
         "</figure></li>\n",
-        kind, image.width, image.height, escaped(name), data_uri(path, image), escaped(name));
+        kind, image.width, image.height, html_text(name), data_uri(path, image), html_text(name));
 }
 
 /// The difference whose map is shown beside a picture, if any.
@@ -284,7 +284,7 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     check(path, report);
     check_writable(path);  // before the pictures are compressed
     const Image8& reference = report.pictures[report.reference].picture;
-    store_file(path, filled(report_template(), {{"title", escaped(report.title)},
+    store_file(path, filled(report_template(), {{"title", html_text(report.title)},
                                                 {"facts", fact_list(report.facts)},
                                                 {"notes", note_list(report.notes)},
                                                 {"width", std::to_string(reference.width)},

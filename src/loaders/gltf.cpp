@@ -36,9 +36,7 @@ void GltfLoader::write_notes() {
     if (damaged_images.size() > 1)
         scene.notes.push_back(fmt::format("{} images are damaged, the factors are used: the first is {}",
                                           damaged_images.size(), damaged_images.begin()->second));
-    for (const Tally* tally : {&file.ignored(), &file.faults()})
-        for (const auto& [sentence, count] : *tally) ignored[sentence] += count;
-    for (const auto& [sentence, count] : ignored) scene.notes.push_back(counted(sentence, count));
+    add_notes(ignored, scene.notes);
 }
 
 Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {

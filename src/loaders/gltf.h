@@ -8,8 +8,6 @@
 #include <tuple>
 #include <vector>
 
-#include "base/text.h"
-#include "loaders/gltf_check.h"
 #include "loaders/gltf_file.h"
 #include "loaders/load.h"
 #include "scene/origin.h"
@@ -20,7 +18,7 @@ namespace peelray {
 struct GltfLoader {
     GltfFile file;
     Scene scene;
-    Tally ignored;
+    Tally& ignored = file.ignored();
     std::vector<std::vector<uint32_t>> uv_sets;  ///< per material: the TEXCOORD_ that its textures use, as they count
     std::map<std::tuple<int, int, int, int, int>, int> texture_ids;  ///< image, wraps, filters → Scene::textures
     std::optional<size_t> variant;                                   ///< that which chooses the primitives' materials

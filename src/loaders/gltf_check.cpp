@@ -253,7 +253,7 @@ size_t length_of(const json* list) {
 
 class Checker {
   public:
-    Checker(const json& root, Tally& faults) : faults_(faults) {
+    Checker(const json& root, Tally& ignored) : ignored_(ignored) {
         for (const auto& [key, value] : root.items()) lengths_[key] = length_of(&value);
         const json* extensions = find(root, "extensions");
         const json* lights = extensions ? find(*extensions, "KHR_lights_punctual") : nullptr;
@@ -295,7 +295,7 @@ class Checker {
             case Kind::numbers:
                 expect(in.is_array(), in, where, "an array");
                 if (member.length && in.size() != member.length)
-                    fail("{}: has {} numbers, needs {}", where, in.size(), member.length);
+                    fail("{}: has {}, needs {}", where, counted("{} number{|s}", in.size()), member.length);
                 return each(in, where, [&](const json& element) { return ranged(number(element, where), member); });
             case Kind::whole:
                 return whole(in, where, INT_MAX);
@@ -354,8 +354,8 @@ class Checker {
     json ranged(const json& value, const Member& member) {
         const auto number = value.get<double>();
         if (number < member.least || number > member.most)
-            ++faults_[fmt::format("{{}} value{{|s}} of {} out of {{its|their}} range (VALUE_NOT_IN_RANGE)",
-                                  member.key)];
+            ++ignored_[fmt::format("{{}} value{{|s}} of {} out of {{its|their}} range (VALUE_NOT_IN_RANGE)",
+                                   member.key)];
         return value;
     }
 
@@ -388,11 +388,11 @@ class Checker {
     }
 
     std::map<std::string, size_t> lengths_;
-    Tally& faults_;
+    Tally& ignored_;
 };
 
 /// Extensions that objects have and "extensionsUsed" does not name: those that are known are read all the same.
-void note_undeclared(const json& root, Tally& faults) {
+void note_undeclared(const json& root, Tally& ignored) {
     std::set<std::string> declared, undeclared;
     if (const json* list = find(root, "extensionsUsed"))
         for (const json& element : *list)
@@ -412,12 +412,10 @@ void note_undeclared(const json& root, Tally& faults) {
                 if (!declared.contains(name)) undeclared.insert(name);
         }
     }
-    for (const std::string& name : undeclared) {
-        std::string plain = printable(name, 60);
-        std::erase_if(plain, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
-        ++faults[fmt::format("{{}} extension in use that extensionsUsed does not name, {}: {} (UNDECLARED_EXTENSION)",
-                             plain, is_supported_extension(name) ? "read all the same" : "without effect")];
-    }
+    for (const std::string& name : undeclared)
+        ++ignored[fmt::format("{{}} extension in use that extensionsUsed does not name, {}: {} (UNDECLARED_EXTENSION)",
+                              escaped(name, 60),
+                              is_supported_extension(name) ? "read all the same" : "without effect")];
 }
 
 void check_required_extensions(const json& root, const std::string& name) {
@@ -437,7 +435,7 @@ bool is_supported_extension(const std::string& name) {
     return std::find(supported_extensions.begin(), supported_extensions.end(), name) != supported_extensions.end();
 }
 
-json check_gltf(const json& root, const std::string& name, Tally& faults) {
+json check_gltf(const json& root, const std::string& name, Tally& ignored) {
     if (!root.is_object()) fail("{}: not a glTF file: its JSON is {}, must be an object", name, root.type_name());
     if (!root.contains("asset")) fail("{}: not a glTF file: it has no \"asset\"", name);
     const json* version = find(root["asset"], "version");
@@ -445,9 +443,9 @@ json check_gltf(const json& root, const std::string& name, Tally& faults) {
         fail("{}: glTF version \"{}\" is not supported; convert it to glTF 2.0", name,
              printable(version->get<std::string>(), 20));
     check_required_extensions(root, name);  // before the parts whose gaps such an extension would explain
-    note_undeclared(root, faults);
+    note_undeclared(root, ignored);
     json out =
-        Checker(root, faults)
+        Checker(root, ignored)
             .object(root, file_members(length_of(find(root, "bufferViews")), length_of(find(root, "nodes"))), name);
     out["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 0}});
     return out;

@@ -4,14 +4,12 @@
 // with its call stack, and its messages do not say where. So it gets only what is listed in gltf_check.cpp, checked.
 #pragma once
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace peelray {
+#include "loaders/tally.h"
 
-/// Counts of what was ignored, by sentence ("{} normal maps ignored"), turned into Scene::notes at the end.
-using Tally = std::map<std::string, size_t>;
+namespace peelray {
 
 /// True for an extension that this loader understands.
 bool is_supported_extension(const std::string& name);
@@ -22,8 +20,8 @@ bool is_supported_extension(const std::string& name);
 /// An accessor without a buffer view gets one: tinygltf refuses the legal indices without. That view has no bytes
 /// behind it, and lies after the file's own ones.
 ///
-/// What is no reason to refuse the file is counted in `faults`, with the code that Khronos's validator has for it:
+/// What is no reason to refuse the file is counted in `ignored`, with the code that Khronos's validator has for it:
 /// numbers out of their range, which stay, and extensions that the file does not declare.
-nlohmann::json check_gltf(const nlohmann::json& root, const std::string& name, Tally& faults);
+nlohmann::json check_gltf(const nlohmann::json& root, const std::string& name, Tally& ignored);
 
 }  // namespace peelray

@@ -86,7 +86,7 @@ std::map<size_t, int> take_variant_materials(json& primitive) {
 
 }  // namespace
 
-GltfExtensions take_extensions(json& checked) {
+GltfExtensions take_extensions(json& checked, Tally& ignored) {
     GltfExtensions out;
     for (json& view : checked["bufferViews"]) out.compressed_views.push_back(take_compressed_view(view));
     for (json& buffer : checked["buffers"]) out.fallback_buffers.push_back(take_fallback_flag(buffer));
@@ -98,7 +98,7 @@ GltfExtensions take_extensions(json& checked) {
             materials.push_back(take_variant_materials(primitive));
         }
     }
-    for (json& texture : checked["textures"]) choose_source(texture, out.ignored);
+    for (json& texture : checked["textures"]) choose_source(texture, ignored);
     out.variants = take_variants(checked);
     return out;
 }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "loaders/gltf_check.h"
 #include "loaders/meshopt.h"
+#include "loaders/tally.h"
 
 namespace peelray {
 
@@ -30,11 +30,10 @@ struct GltfExtensions {
     std::vector<std::vector<std::optional<DracoSource>>> draco_sources;  ///< one per mesh, in it one per primitive
     std::vector<std::string> variants;                                   ///< names, of KHR_materials_variants
     std::vector<std::vector<std::map<size_t, int>>> variant_materials;   ///< per mesh and primitive: by variant
-    Tally ignored;
 };
 
 /// Takes the extensions out of JSON that check_gltf() has checked. A texture's `source` becomes that of the format
 /// which is read, where an extension offers several.
-GltfExtensions take_extensions(nlohmann::json& checked);
+GltfExtensions take_extensions(nlohmann::json& checked, Tally& ignored);
 
 }  // namespace peelray

@@ -79,16 +79,15 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     const Glb glb = is_glb ? split_glb(bytes) : Glb{bytes, {}};
     json checked;
     try {
-        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, faults_);
+        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, ignored_);
     } catch (const json::exception& error) {
         fail("{}: not a glTF file: {}", name_, printable(error.what(), 200));
     }
     for (const json& node : checked["nodes"])
         if (node.contains("matrix") &&
             (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
-            ++faults_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
-    extensions_ = take_extensions(checked);
-    ignored_ = extensions_.ignored;
+            ++ignored_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
+    extensions_ = take_extensions(checked, ignored_);
     hide_unknown_types(checked);
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);
@@ -97,7 +96,7 @@ GltfFile::GltfFile(const std::filesystem::path& path)
 // tinygltf splits the container again, but only after we have looked: its own check of the binary chunk is 8 bytes off,
 // and the JSON has to be checked first.
 GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) {
-    if (all.size() < 20) fail("{}: truncated GLB: {} bytes, the headers need 20", name_, all.size());
+    if (all.size() < 20) fail("{}: truncated GLB: {}, the headers need 20", name_, counted("{} byte{|s}", all.size()));
     const auto u32 = [&](size_t offset) { return load_as<uint32_t>(all.data() + offset); };
     if (u32(4) != 2) fail("{}: GLB version {} is not supported; convert it to glTF 2.0", name_, u32(4));
     const size_t length = u32(8);
@@ -116,14 +115,14 @@ GltfFile::Glb GltfFile::split_glb(std::span<const uint8_t> all) {
         else if (type == binary_chunk && glb.binary.empty())
             glb.binary = chunk;
         else if (type == binary_chunk || type == json_chunk)
-            ++faults_["{} chunk{|s} of the GLB beyond the first of their kind ignored (GLB_DUPLICATE_CHUNK)"];
+            ++ignored_["{} chunk{|s} of the GLB beyond the first of their kind ignored (GLB_DUPLICATE_CHUNK)"];
         if (type == binary_chunk && chunks > 1 && glb.binary.data() == chunk.data())
-            ++faults_["{} binary chunk{|s} that {is|are} not the second of the GLB used (GLB_UNEXPECTED_BIN_CHUNK)"];
+            ++ignored_["{} binary chunk{|s} that {is|are} not the second of the GLB used (GLB_UNEXPECTED_BIN_CHUNK)"];
         at += 8 + ((size + 3) & ~size_t(3));
     }
     if (chunks == 0) fail("{}: truncated GLB: no chunk", name_);
     if (at < length)
-        ++faults_["{} GLB ends amid a chunk's header, which is ignored (GLB_UNEXPECTED_END_OF_CHUNK_HEADER)"];
+        ++ignored_["{} GLB ends amid a chunk's header, which is ignored (GLB_UNEXPECTED_END_OF_CHUNK_HEADER)"];
     return glb;
 }
 
@@ -160,7 +159,8 @@ void GltfFile::take_uris(json& checked, std::optional<size_t> glb_bytes) {
         } else if (!is_chunk || (is_fallback && *glb_bytes < source.length)) {
             source.has_data = false;  // legal where nothing reads it, see bytes_of()
         } else if (*glb_bytes < source.length) {
-            fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", at, source.length, *glb_bytes);
+            fail("{}: the buffer is too short: byteLength is {}, {}", at, source.length,
+                 counted("there {is|are} {} byte{|s}", *glb_bytes));
         }
         if (!is_chunk || !source.has_data) buffer["uri"] = std::to_string(buffer_sources_.size());
         if (!source.has_data) buffer["byteLength"] = 1;  // tinygltf insists on bytes
@@ -225,15 +225,24 @@ Bytes GltfFile::read_buffer(size_t index) {
     if (!has_data) return Bytes(1);
     Bytes bytes = read_uri(uri, where("buffers", index) + ".uri");
     if (bytes.size() < length)
-        fail("{}: the buffer is too short: byteLength is {}, there are {} bytes", where("buffers", index), length,
-             bytes.size());
+        fail("{}: the buffer is too short: byteLength is {}, {}", where("buffers", index), length,
+             counted("there {is|are} {} byte{|s}", bytes.size()));
     bytes.resize(length);
     return bytes;
 }
 
-std::span<const uint8_t> GltfFile::bytes_of(const std::string& at, size_t buffer, uint64_t offset,
-                                            uint64_t length) const {
-    if (!buffer_sources_[buffer].has_data)
+/// Whether a buffer has bytes. Those of a fallback are read when they are first asked for.
+bool GltfFile::has_data(size_t buffer) {
+    BufferSource& source = buffer_sources_[buffer];
+    if (source.has_data) return true;
+    if (source.uri.empty()) return false;
+    source.has_data = true;
+    model_.buffers[buffer].data = read_buffer(buffer);
+    return true;
+}
+
+std::span<const uint8_t> GltfFile::bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length) {
+    if (!has_data(buffer))
         fail("{}: the buffer has no data: no \"uri\" and no GLB chunk; export the scene uncompressed",
              where("buffers", buffer));
     const std::span<const uint8_t> data = model_.buffers[buffer].data;
@@ -251,7 +260,7 @@ std::span<const uint8_t> GltfFile::view(int index) {
         try {
             decompressed_[i] = decompress(i, *compressed);
         } catch (const Error&) {
-            if (!has_fallback(buffer)) throw;
+            if (!has_data(buffer)) throw;
             compressed.reset();
             ++ignored_
                 ["{} compressed buffer view{|s} that cannot be decoded read from {its|their} uncompressed fallback"];
@@ -261,7 +270,7 @@ std::span<const uint8_t> GltfFile::view(int index) {
     return bytes_of(where("bufferViews", i), buffer, view.byteOffset, view.byteLength);
 }
 
-Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& from) const {
+Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& from) {
     const std::string at = where("bufferViews", view) + ".extensions";
     Bytes out = decode_meshopt(bytes_of(at, from.buffer, from.offset, from.length), from.layout, at);
     const size_t length = model_.bufferViews[view].byteLength;
@@ -269,16 +278,6 @@ Bytes GltfFile::decompress(size_t view, const GltfExtensions::CompressedView& fr
         fail("{}: {} elements of {} bytes are not the {} bytes of the buffer view", at, from.layout.count,
              from.layout.stride, length);
     return out;
-}
-
-/// Whether a buffer that was passed over has data after all, which is then read.
-bool GltfFile::has_fallback(size_t buffer) {
-    BufferSource& source = buffer_sources_[buffer];
-    if (source.has_data) return true;
-    if (source.uri.empty()) return false;
-    source.has_data = true;
-    model_.buffers[buffer].data = read_buffer(buffer);
-    return true;
 }
 
 double GltfFile::Accessor::largest() const {

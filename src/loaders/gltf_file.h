@@ -16,8 +16,8 @@
 
 #include "base/error.h"
 #include "loaders/files.h"
-#include "loaders/gltf_check.h"
 #include "loaders/gltf_extensions.h"
+#include "loaders/tally.h"
 
 namespace peelray {
 
@@ -34,10 +34,8 @@ class GltfFile {
     /// All indices in it are in range, and vectors have the format's length or none at all.
     const tinygltf::Model& model() const { return model_; }
     const GltfExtensions& extensions() const { return extensions_; }
-    /// What reading the file so far had to pass over.
-    const Tally& ignored() const { return ignored_; }
-    /// What is invalid about it and no reason to refuse it, seen before tinygltf dropped it.
-    const Tally& faults() const { return faults_; }
+    /// What reading the file so far had to pass over, and what is invalid about it and no reason to refuse it.
+    Tally& ignored() { return ignored_; }
     /// The place of an element in messages: "box.gltf.meshes[3]".
     std::string where(const char* list, size_t index) const { return fmt::format("{}.{}[{}]", name_, list, index); }
 
@@ -83,9 +81,9 @@ class GltfFile {
     void load(const std::string& text, const Glb* glb);
     Bytes read_uri(const std::string& uri, const std::string& where);
     Bytes read_buffer(size_t index);
-    std::span<const uint8_t> bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length) const;
-    Bytes decompress(size_t view, const GltfExtensions::CompressedView& from) const;
-    bool has_fallback(size_t buffer);
+    bool has_data(size_t buffer);
+    std::span<const uint8_t> bytes_of(const std::string& at, size_t buffer, uint64_t offset, uint64_t length);
+    Bytes decompress(size_t view, const GltfExtensions::CompressedView& from);
     Elements elements(const std::string& where, int view_index, uint64_t offset, uint64_t count, size_t element_size);
     template <typename T, typename Load>
     std::vector<T> read(const tinygltf::Accessor& from, const Accessor& accessor, Load load);
@@ -109,7 +107,6 @@ class GltfFile {
     GltfExtensions extensions_;
     std::map<size_t, Bytes> decompressed_;  ///< by buffer view
     Tally ignored_;
-    Tally faults_;
     std::map<size_t, std::string> foreign_accessors_;  ///< those of an unknown type, which nothing may read
     uint64_t decoded_ = 0;                             ///< components decoded so far, see spend()
 };

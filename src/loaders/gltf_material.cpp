@@ -216,11 +216,11 @@ class MaterialReader {
         return index;
     }
 
-    /// The image that a texture shows; none (with a note) where only an extension's format is offered.
+    /// The image that a texture shows; none (with a note) where no source is known.
     std::optional<int> image_of(int texture) {
         const int image = model_.textures[static_cast<size_t>(texture)].source;
         if (image >= 0) return image;
-        ++loader_.ignored["{} texture{|s} without a PNG or JPEG source ignored"];
+        ++loader_.ignored["{} texture{|s} ignored that {names|name} no image, or only in an extension that is unknown"];
         return std::nullopt;
     }
 
@@ -230,13 +230,11 @@ class MaterialReader {
         const std::optional<int> image = image_of(texture);
         if (!image) return image;
         if (loader_.file.is_image_missing(*image)) {
-            std::string file = printable(loader_.file.image_file(*image), 80);
-            std::erase_if(file, [](char c) { return c == '{' || c == '}'; });  // the tally's sentences are formats
             ++loader_.ignored[is_base_color
                                   ? fmt::format(
                                         "{{}} base colour texture{{|s}} left out, the image file {} is missing: the "
                                         "factors are used",
-                                        file)
+                                        escaped(loader_.file.image_file(*image), 80))
                                   : "{} texture{|s} other than of the base colour left out, {its|their} image {file "
                                     "is|files are} missing"];
             return std::nullopt;
@@ -257,7 +255,7 @@ class MaterialReader {
         const tinygltf::Sampler sampler = index < 0 ? tinygltf::Sampler() : model_.samplers[static_cast<size_t>(index)];
         const auto known = [&](int mode) {
             const std::optional<Texture::Wrap> wrap = wrap_mode(mode);
-            if (!wrap) ++loader_.ignored["{} unknown wrap modes read as REPEAT (VALUE_NOT_IN_LIST)"];
+            if (!wrap) ++loader_.ignored["{} unknown wrap mode{|s} read as REPEAT (VALUE_NOT_IN_LIST)"];
             return wrap.value_or(Texture::Wrap::repeat);
         };
         const Texture::Wrap u = known(sampler.wrapS), v = known(sampler.wrapT);

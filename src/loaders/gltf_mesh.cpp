@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/text.h"
 #include "loaders/gltf.h"
 #include "loaders/gltf_draco.h"
 #include "scene/normals.h"
@@ -124,14 +125,15 @@ class PrimitiveReader {
             (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with("TEXCOORD_"));
         if (!is_unit && !is_quantized)
             ++loader_.ignored[fmt::format(
-                "{{}} attributes {} of a type that the format does not have there used as they are "
+                "{{}} attribute{{|s}} {} of a type that the format does not have there used as {{it is|they are}} "
                 "(MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT)",
                 name)];
     }
 
     void check_count(const char* name, size_t count, const Primitive& out) const {
         if (count != out.positions.size())
-            fail("{}: {} has {} elements, POSITION has {}", where_, name, count, out.positions.size());
+            fail("{}: {} has {}, POSITION has {}", where_, name, counted("{} element{|s}", count),
+                 out.positions.size());
     }
 
     void check_positions(const Primitive& out) const {
@@ -152,10 +154,9 @@ class PrimitiveReader {
             corners = loader_.file.integers(from_.indices);
             for (size_t i = 0; i < corners.size(); ++i)
                 if (corners[i] >= out.positions.size())
-                    fail("{}: index {} is {}, the primitive has {} vertices", where_, i, corners[i],
-                         out.positions.size());
-            const uint32_t type = loader_.file.accessor(from_.indices).component_type;
-            const uint32_t restart = type == 5121 ? UINT8_MAX : type == 5123 ? UINT16_MAX : UINT32_MAX;
+                    fail("{}: index {} is {}, the primitive has {}", where_, i, corners[i],
+                         counted("{} vert{ex|ices}", out.positions.size()));
+            const auto restart = static_cast<uint32_t>(loader_.file.accessor(from_.indices).largest());
             if (std::find(corners.begin(), corners.end(), restart) != corners.end())
                 ++loader_.ignored
                       ["{} primitive{|s} whose largest index would restart {it|them} drawn with that vertex "
@@ -235,7 +236,9 @@ class PrimitiveReader {
         for (glm::vec2& uv : uvs)
             if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
                 uv = glm::vec2(0);
-                ++loader_.ignored["{} texture coordinates that are not finite count as 0 (ACCESSOR_INVALID_FLOAT)"];
+                ++loader_.ignored
+                      ["{} texture coordinate{|s} that {is|are} not finite {counts|count} as 0 "
+                       "(ACCESSOR_INVALID_FLOAT)"];
             }
         return uvs;
     }

@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "base/text.h"
 #include "loaders/gltf.h"
 
 namespace peelray {
@@ -19,42 +18,34 @@ void check_finite(const glm::mat4& m, const std::string& where) {
             if (!std::isfinite(m[c][r])) fail("{}: the transform is not finite; repair the node", where);
 }
 
-glm::vec3 to_vec3(const std::vector<double>& v, const glm::vec3& missing) {
-    return v.empty() ? missing : glm::vec3(v[0], v[1], v[2]);
+template <typename T>
+glm::vec<3, T> to_vector(const std::vector<double>& v, T missing) {
+    return v.empty() ? glm::vec<3, T>(missing) : glm::vec<3, T>(v[0], v[1], v[2]);
 }
 
 /// From x, y, z, w; a rotation without direction counts as none.
-template <typename T>
-glm::quat rotation_of(const T* xyzw) {
-    glm::quat rotation;
-    rotation.x = static_cast<float>(xyzw[0]), rotation.y = static_cast<float>(xyzw[1]);
-    rotation.z = static_cast<float>(xyzw[2]), rotation.w = static_cast<float>(xyzw[3]);
-    const float length = glm::length(rotation);
-    return length > 0 && std::isfinite(length) ? rotation / length : glm::quat(1, 0, 0, 0);
+template <typename T, typename From>
+glm::qua<T> rotation_of(const From* xyzw) {
+    glm::qua<T> rotation;
+    rotation.x = static_cast<T>(xyzw[0]), rotation.y = static_cast<T>(xyzw[1]);
+    rotation.z = static_cast<T>(xyzw[2]), rotation.w = static_cast<T>(xyzw[3]);
+    const T length = glm::length(rotation);
+    return length > 0 && std::isfinite(length) ? rotation / length : glm::qua<T>(1, 0, 0, 0);
 }
 
-/// As far as floats go; ExactNode has the rest.
+/// Rounded to T.
+template <typename T>
 Placement placement_of(const tinygltf::Node& from) {
     Placement out;
-    if (!from.rotation.empty()) out.rotation = glm::dquat(rotation_of(from.rotation.data()));
-    out.translation = to_vec3(from.translation, glm::vec3(0));
-    out.scale = to_vec3(from.scale, glm::vec3(1));
+    if (!from.rotation.empty()) out.rotation = glm::dquat(rotation_of<T>(from.rotation.data()));
+    out.translation = to_vector<T>(from.translation, 0);
+    out.scale = to_vector<T>(from.scale, 1);
     return out;
-}
-
-glm::dvec3 to_dvec3(const std::vector<double>& v, const glm::dvec3& missing) {
-    return v.empty() ? missing : glm::dvec3(v[0], v[1], v[2]);
 }
 
 ExactNode exact_node(const tinygltf::Node& from) {
     ExactNode out;
-    out.rest.translation = to_dvec3(from.translation, glm::dvec3(0));
-    out.rest.scale = to_dvec3(from.scale, glm::dvec3(1));
-    if (const std::vector<double>& r = from.rotation; !r.empty()) {
-        const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-        const double length = glm::length(rotation);
-        if (length > 0 && std::isfinite(length)) out.rest.rotation = rotation / length;
-    }
+    out.rest = placement_of<double>(from);
     out.local = from.matrix.empty() ? out.rest.matrix(true) : glm::make_mat4(from.matrix.data());
     return out;
 }
@@ -129,7 +120,7 @@ class NodeReader {
         node.parent = parent;
         node.source = static_cast<int>(index);
         node.fixed = !from.matrix.empty();
-        node.rest = placement_of(from);
+        node.rest = placement_of<float>(from);
         glm::mat4 local(node.rest.matrix());
         for (int i = 0; i < 16 && node.fixed; ++i)
             local[i / 4][i % 4] = static_cast<float>(from.matrix[static_cast<size_t>(i)]);
@@ -141,7 +132,10 @@ class NodeReader {
         check_finite(world, loader_.file.where("nodes", index));
         const bool is_hidden = is_node_hidden(from) || (parent >= 0 && hidden_[static_cast<size_t>(parent)]);
         hidden_.push_back(is_hidden);
-        if (from.mesh >= 0 && !is_hidden) node.mesh = show_mesh(from.mesh, world);
+        if (from.mesh >= 0 && !is_hidden) {
+            node.mesh = from.mesh;
+            read_mesh(size_t(from.mesh), world);
+        }
         if (node.mesh >= 0) note_skin(from);
         if (node.mesh >= 0 && !from.weights.empty() && from.weights.size() != loader_.target_count(uint32_t(node.mesh)))
             ++loader_.ignored
@@ -219,7 +213,7 @@ class NodeReader {
         for (size_t i = 0; i < count.value_or(0); ++i) {
             Placement at;
             if (!translations.empty()) at.translation = glm::make_vec3(&translations[3 * i]);
-            if (!rotations.empty()) at.rotation = glm::dquat(rotation_of(&rotations[4 * i]));
+            if (!rotations.empty()) at.rotation = glm::dquat(rotation_of<float>(&rotations[4 * i]));
             if (!scales.empty()) at.scale = glm::make_vec3(&scales[3 * i]);
             out.push_back(at);
             check_finite(glm::mat4(at.matrix()), fmt::format("{}: instance {}", where, i));
@@ -246,13 +240,11 @@ class NodeReader {
         }
     }
 
-    int show_mesh(int mesh, const glm::mat4& world) {
-        const auto i = static_cast<size_t>(mesh);
+    void read_mesh(size_t mesh, const glm::mat4& world) {
         loader_.scene.meshes.resize(model_.meshes.size());
         const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(world))));
-        if (!read_[i]) loader_.read_mesh(static_cast<uint32_t>(i), scale);
-        read_[i] = true;
-        return mesh;
+        if (!read_[mesh]) loader_.read_mesh(static_cast<uint32_t>(mesh), scale);
+        read_[mesh] = true;
     }
 
     /// Nothing, and a note, of one that cannot see.
@@ -320,7 +312,7 @@ class NodeReader {
             ++loader_.ignored["{} light{|s} of an unknown type ignored (VALUE_NOT_IN_LIST)"];
             return -1;
         }
-        light.color = to_vec3(from.color, glm::vec3(1)) * static_cast<float>(from.intensity);
+        light.color = to_vector<float>(from.color, 1) * static_cast<float>(from.intensity);
         if (from.range > 0) light.range = static_cast<float>(from.range);
         light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
         light.outer_cone = static_cast<float>(from.spot.outerConeAngle);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "loaders/webp.h"
 
 // The decoder is compiled into this file alone: no other module sees stb's names.
@@ -29,8 +30,8 @@ namespace {
 
 [[noreturn]] void fail_image(const std::string& where, size_t size) {
     const char* reason = stbi_failure_reason();
-    fail("{}: {} bytes that are no PNG, JPEG or WebP image ({}); repair or re-export the image", where, size,
-         reason ? reason : "unknown");
+    fail("{}: {} no PNG, JPEG or WebP image ({}); repair or re-export the image", where,
+         counted("{} byte{|s} that {is|are}", size), reason ? reason : "unknown");
 }
 
 /// stb_image fills the missing part of a cut-off JPEG with grey; a whole one ends with EOI (FF D9) after its last SOS
@@ -43,6 +44,18 @@ bool is_truncated_jpeg(std::span<const uint8_t> bytes) {
 }
 
 }  // namespace
+
+Texture texture_of(const void* pixels, int width, int height, bool deep) {
+    Texture texture;
+    texture.width = static_cast<uint32_t>(width);
+    texture.height = static_cast<uint32_t>(height);
+    const auto take = [&](auto& texels) {
+        texels.resize(size_t(texture.width) * texture.height);
+        std::memcpy(texels.data(), pixels, texels.size() * sizeof texels[0]);
+    };
+    deep ? take(texture.deep_texels) : take(texture.texels);
+    return texture;
+}
 
 void check_image(std::span<const uint8_t> bytes, const std::string& where) {
     int width = 0, height = 0, channels = 0;
@@ -68,16 +81,9 @@ Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, D
         &stbi_image_free);
     if (!pixels) fail_image(where, bytes.size());
     if (is_truncated_jpeg(bytes))
-        fail("{}: the JPEG image is truncated after {} bytes; repair or re-export it", where, bytes.size());
-    Texture texture;
-    texture.width = static_cast<uint32_t>(width);
-    texture.height = static_cast<uint32_t>(height);
-    const auto take = [&](auto& texels) {
-        texels.resize(size_t(texture.width) * texture.height);
-        std::memcpy(texels.data(), pixels.get(), texels.size() * sizeof texels[0]);
-    };
-    deep ? take(texture.deep_texels) : take(texture.texels);
-    return texture;
+        fail("{}: the JPEG image is truncated after {}; repair or re-export it", where,
+             counted("{} byte{|s}", bytes.size()));
+    return texture_of(pixels.get(), width, height, deep);
 }
 
 const char* foreign_image_type(std::span<const uint8_t> bytes) {

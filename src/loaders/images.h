@@ -13,6 +13,9 @@ enum class Depth : uint8_t {
     as_stored,  ///< those give Texture::deep_texels
 };
 
+/// A texture of decoded pixels: RGBA of eight bits a channel or, `deep`, of sixteen.
+Texture texture_of(const void* pixels, int width, int height, bool deep = false);
+
 /// Fills size and texels. Throws Error, prefixed with `where`, for bytes that are not such an image, for a truncated
 /// one, and for a side of more than 16384 pixels.
 Texture decode_image(std::span<const uint8_t> bytes, const std::string& where, Depth depth = Depth::eight);

@@ -16,6 +16,7 @@
 #include "loaders/off.h"
 #include "loaders/ply.h"
 #include "loaders/stl.h"
+#include "scene/sidedness.h"
 #include "scene/tangents.h"
 
 namespace peelray {
@@ -49,19 +50,20 @@ bool has_triangles(const Scene& scene) {
 
 Scene load_scene(const std::string& name, const LoadOptions& options) {
     constexpr std::string_view prefix = "builtin:";
-    const auto refuse_variant = [&](const Scene& scene) {
+    const auto apply_options = [&](Scene& scene) {
         if (!options.variant.empty() && scene.variants.empty())
             fail("{}: the scene has no variants of its materials; leave out {}", scene.name, setting::variant);
+        if (options.double_sided) show_both_sides(scene);
     };
     if (name.starts_with(prefix)) {
         Scene scene = make_builtin(std::string_view(name).substr(prefix.size()));
-        refuse_variant(scene);
+        apply_options(scene);
         return scene;
     }
     const std::filesystem::path path(name);
     try {
         Scene scene = load_file(path, options);
-        refuse_variant(scene);
+        apply_options(scene);
         complete_tangents(scene);
         if (!has_triangles(scene)) fail("{}: the scene has no triangles; give a file with a surface", scene.name);
         return scene;

@@ -8,8 +8,9 @@
 namespace peelray {
 
 struct LoadOptions {
-    std::string variant;   ///< of the materials (KHR_materials_variants), by name; empty: as the file is without
-    float point_size = 0;  ///< world units: the diameter of glTF's points and lines; 0: they are left out
+    std::string variant;        ///< of the materials (KHR_materials_variants), by name; empty: as the file is without
+    float point_size = 0;       ///< world units: the diameter of glTF's points and lines; 0: they are left out
+    bool double_sided = false;  ///< every material shows both sides
 };
 
 /// Reads a scene: "builtin:NAME" or a file (.gltf, .glb, .obj, .ply, .stl, .off).

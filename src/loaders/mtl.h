@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "loaders/images.h"
+#include "loaders/tally.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -36,14 +37,11 @@ struct MtlMaterial {
     std::optional<MtlTexture> diffuse_map, emissive_map, dissolve_map, roughness_map, metallic_map, normal_map;
 };
 
-/// What has no effect, by sentence with the count in front ("{} normal maps ignored").
-using MtlTally = std::map<std::string, size_t>;
-
 /// Reads the text of a library. What cannot be read or has no effect is counted in `tally`; `name` is the file's.
-std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, MtlTally& tally);
+std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, Tally& tally);
 
 /// A map_… statement's options and name. Options without effect are counted. `is_normal`: of a normal map.
-MtlTexture parse_mtl_texture(std::string_view rest, MtlTally& tally, bool is_normal = false);
+MtlTexture parse_mtl_texture(std::string_view rest, Tally& tally, bool is_normal = false);
 
 /// Materials and textures of a scene out of those of its libraries.
 class MtlConverter {
@@ -51,7 +49,7 @@ class MtlConverter {
     /// `folder`: where the libraries and textures lie.
     MtlConverter(const std::filesystem::path& folder, Scene& scene) : folder_(folder), scene_(scene) {}
 
-    MtlTally tally;
+    Tally tally;
 
     /// Appends the material to the scene's, and the textures that it needs.
     void add(const MtlMaterial& from);

@@ -277,7 +277,7 @@ void MtlConverter::write_notes() {
         scene_.notes.push_back(fmt::format("{} wholly transparent (d 0 or Tr 1): {}",
                                            counted("{} material{|s} {is|are}", transparent_.size()),
                                            listed(transparent_)));
-    for (const auto& [sentence, count] : tally) scene_.notes.push_back(counted(sentence, count));
+    add_notes(tally, scene_.notes);
 }
 
 }  // namespace peelray

@@ -17,8 +17,7 @@ constexpr std::array<std::string_view, 3> normal_maps = {"norm", "map_kn", "map_
 
 class MtlReader {
   public:
-    MtlReader(std::string_view text, const std::string& name, MtlTally& tally)
-        : text_(text), name_(name), tally_(tally) {}
+    MtlReader(std::string_view text, const std::string& name, Tally& tally) : text_(text), name_(name), tally_(tally) {}
 
     std::vector<MtlMaterial> read() {
         if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
@@ -33,23 +32,17 @@ class MtlReader {
             if (key == "newmtl") {
                 out_.emplace_back().name = trimmed(rest);
             } else if (out_.empty()) {
-                ++tally_[fmt::format("{{}} statement{{|s}} before the first newmtl of \"{}\" ignored", escaped(name_))];
+                ++tally_[fmt::format("{{}} statement{{|s}} before the first newmtl of \"{}\" ignored",
+                                     escaped(name_, 80))];
             } else if (!statement(key, trimmed(rest))) {
                 ++tally_[fmt::format("{{}} statement{{|s}} in line {} of \"{}\" ignored, its value cannot be read: {}",
-                                     lines.number(), escaped(name_), escaped(printable(trimmed(lines.line()), 60)))];
+                                     lines.number(), escaped(name_, 80), escaped(trimmed(lines.line()), 60))];
             }
         }
         return std::move(out_);
     }
 
   private:
-    /// Braces doubled, for text in the tally's sentences.
-    static std::string escaped(std::string_view text) {
-        std::string out;
-        for (const char c : printable(text, 80)) out += c == '{' ? "{{" : c == '}' ? "}}" : std::string(1, c);
-        return out;
-    }
-
     /// False: its value cannot be read.
     bool statement(const std::string& key, std::string_view rest) {
         MtlMaterial& m = out_.back();
@@ -75,8 +68,7 @@ class MtlReader {
         if (lower == "bump" || lower == "map_bump")
             ++tally_["{} bump map{|s} (map_bump), which {holds|hold} heights, ignored; normal maps (norm) are read"];
         else
-            ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect",
-                                 escaped(printable(key, 20)))];
+            ++tally_[fmt::format("{{}} \"{}\" statement{{|s}} of material libraries without effect", escaped(key, 20))];
         return true;
     }
 
@@ -131,7 +123,7 @@ class MtlReader {
 
     std::string_view text_;
     const std::string& name_;
-    MtlTally& tally_;
+    Tally& tally_;
     std::vector<MtlMaterial> out_;
 };
 
@@ -162,8 +154,7 @@ const Option* find_option(std::string_view word) {
 
 class TextureOptions {
   public:
-    TextureOptions(MtlTexture& out, MtlTally& tally, bool is_normal)
-        : out_(out), tally_(tally), is_normal_(is_normal) {}
+    TextureOptions(MtlTexture& out, Tally& tally, bool is_normal) : out_(out), tally_(tally), is_normal_(is_normal) {}
 
     /// Takes an option with its values off the front; false: no option stands there.
     bool take(std::string_view& rest) {
@@ -225,18 +216,18 @@ class TextureOptions {
     }
 
     MtlTexture& out_;
-    MtlTally& tally_;
+    Tally& tally_;
     bool is_normal_;
     bool needs_name_ = true;
 };
 
 }  // namespace
 
-std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, MtlTally& tally) {
+std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, Tally& tally) {
     return MtlReader(text, name, tally).read();
 }
 
-MtlTexture parse_mtl_texture(std::string_view rest, MtlTally& tally, bool is_normal) {
+MtlTexture parse_mtl_texture(std::string_view rest, Tally& tally, bool is_normal) {
     MtlTexture out;
     TextureOptions reader(out, tally, is_normal);
     while (reader.take(rest)) {

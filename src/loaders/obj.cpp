@@ -29,7 +29,7 @@ class MaterialLibraries {
     bool is_any_missing() const { return is_any_missing_; }
 
     /// What stands after one mtllib: one name, with blanks in it, or several. The longest that is a file counts.
-    void read(std::string_view names, MtlTally& tally) {
+    void read(std::string_view names, Tally& tally) {
         if (read_file_named(names, tally, false)) return;
         names = name_without_comment(names);
         const std::vector<std::string_view> words = split(names);
@@ -66,7 +66,7 @@ class MaterialLibraries {
     }
 
     /// False: there is no such file, or only elsewhere, which is not wanted.
-    bool read_file_named(std::string_view name, MtlTally& tally, bool elsewhere) {
+    bool read_file_named(std::string_view name, Tally& tally, bool elsewhere) {
         const std::optional<SideFile> file = find_beside(folder_, unquoted(name));
         if (!file || (file->is_elsewhere && !elsewhere)) return false;
         if (!read_.insert(file->path).second) return true;
@@ -84,7 +84,7 @@ class MaterialLibraries {
 
     /// A library whose name, the words up to the next one that ends like one, leads nowhere: looked for by its bare
     /// name, or noted as missing. Returns the last of the words.
-    size_t read_elsewhere(const std::vector<std::string_view>& words, size_t first, MtlTally& tally) {
+    size_t read_elsewhere(const std::vector<std::string_view>& words, size_t first, Tally& tally) {
         size_t last = first;
         while (last + 1 < words.size() && lower_extension(std::filesystem::path(unquoted(words[last]))) != ".mtl")
             ++last;
@@ -118,7 +118,7 @@ class MaterialLibraries {
 /// The scene's material for each name after usemtl. The first of several with one name counts, as the format says.
 class MaterialNames {
   public:
-    MaterialNames(const std::vector<MtlMaterial>& materials, MtlTally& tally) {
+    MaterialNames(const std::vector<MtlMaterial>& materials, Tally& tally) {
         for (size_t i = 0; i < materials.size(); ++i)
             if (!exact_.try_emplace(materials[i].name, i).second)
                 ++tally["{} material{|s} whose name an earlier one has already: the first counts"];

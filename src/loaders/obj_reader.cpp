@@ -50,8 +50,8 @@ class ObjReader {
             fail("{}: the text is in UTF-16; save it in ASCII or UTF-8", name_);
         while (lines_.next()) statement(lines_.line());
         if (out_.mesh.corners.empty())
-            fail("{}: none of its {} lines is a face with three or more corners; export the surface as polygons", name_,
-                 lines_.number());
+            fail("{}: none of its {} a face with three or more corners; export the surface as polygons", name_,
+                 counted("{} line{|s} is", lines_.number()));
         finish_indices();
         finish_colors();
         write_notes();
@@ -429,7 +429,7 @@ class ObjReader {
             all.count += met.count;
         }
         note(all, fmt::format("{{}} line{{|s}} that {{begins|begin}} with no OBJ keyword (such as \"{}\") ignored",
-                              unknown_.begin()->first));
+                              escaped(unknown_.begin()->first)));
     }
 
     const std::string_view text_;

@@ -199,8 +199,8 @@ class OffReader {
         const int64_t left = static_cast<int64_t>(file_.left()) + 1;
         const int64_t per_vertex = (binary_ ? 4 : 2) * (homogeneous_ ? 4 : 3), per_face = binary_ ? 8 : 2;
         if (vertices < 0 || faces < 0 || vertices > left / per_vertex || faces > left / per_face)
-            fail("{}: claims {} vertices and {} faces in a file of {} bytes; it is truncated or damaged", file_.name(),
-                 vertices, faces, file_.size());
+            fail("{}: claims {} vertices and {} faces in a file of {}; it is truncated or damaged", file_.name(),
+                 vertices, faces, counted("{} byte{|s}", file_.size()));
         vertices_ = static_cast<uint64_t>(vertices);
         faces_ = static_cast<uint64_t>(faces);
         if (faces_ == 0)
@@ -277,8 +277,8 @@ class OffReader {
         for (int64_t i = 0; i < corners; ++i) {
             const int64_t index = whole();
             if (index < 0 || static_cast<uint64_t>(index) >= vertices_)
-                fail("{}: {}{} has index \"{}\", the file has {} vertices", file_.name(), place(), file_.part_name(),
-                     index, vertices_);
+                fail("{}: {}{} has index \"{}\", the file has {}", file_.name(), place(), file_.part_name(), index,
+                     counted("{} vert{ex|ices}", vertices_));
             mesh_.corners.push_back(static_cast<uint32_t>(index));
         }
         const size_t end = mesh_.corners.size();

@@ -194,8 +194,9 @@ class PlyReader {
         const PlyElement& element = *plan.element;
         if (body_.least_size(element) * static_cast<double>(element.count) <= static_cast<double>(file_.left()) + 1)
             return;
-        fail("{}: claims {} elements \"{}\", but only {} bytes are left for them; the file is truncated or damaged",
-             file_.name(), element.count, printable(element.name, 40), file_.left());
+        fail("{}: claims {} \"{}\", but only {} left for {}; the file is truncated or damaged", file_.name(),
+             counted("{} element{|s}", element.count), printable(element.name, 40),
+             counted("{} byte{|s} {is|are}", file_.left()), counted("{it|them}", element.count));
     }
 
     void check_elements() {
@@ -291,8 +292,8 @@ class PlyReader {
         const int64_t index = body_.whole(type);
         if (strip && (index == -1 || (type == PlyType::uint32 && index == UINT32_MAX))) return no_value;  // a restart
         if (index < 0 || static_cast<uint64_t>(index) >= vertex_count_ || index >= no_value)
-            fail("{}: {}: {} has index {}, the file has {} vertices", file_.name(), body_.place(), file_.part_name(),
-                 index, vertex_count_);
+            fail("{}: {}: {} has index {}, the file has {}", file_.name(), body_.place(), file_.part_name(), index,
+                 counted("{} vert{ex|ices}", vertex_count_));
         return static_cast<uint32_t>(index);
     }
 

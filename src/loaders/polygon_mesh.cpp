@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "loaders/triangulate.h"
+#include "scene/box.h"
 #include "scene/encoding.h"
 #include "scene/normals.h"
 #include "scene/origin.h"
@@ -237,8 +238,8 @@ class Converter {
         const uint32_t begin = begin_of(face), end = end_of(face);
         for (uint32_t corner = begin; corner < end; ++corner)
             if (mesh_.corners[corner] >= mesh_.positions.size())
-                fail("{}: polygon {} has index {}, the file has {} vertices", where_, face, mesh_.corners[corner],
-                     mesh_.positions.size());
+                fail("{}: polygon {} has index {}, the file has {}", where_, face, mesh_.corners[corner],
+                     counted("{} vert{ex|ices}", mesh_.positions.size()));
         if (end - begin < 3) {
             ++counts_.too_few_corners;
             return;
@@ -302,17 +303,15 @@ glm::vec4 encoded_color(uint8_t red, uint8_t green, uint8_t blue, uint8_t alpha)
 }
 
 std::optional<glm::dvec3> far_middle(const PolygonMesh& mesh) {
-    glm::vec3 lower(INFINITY), upper(-INFINITY);
+    Box box;
     for (const uint32_t corner : mesh.corners) {
         if (corner >= mesh.positions.size()) continue;  // refused when it is converted
         const glm::vec3& p = mesh.positions[corner];
-        if (!std::isfinite(p.x + p.y + p.z)) continue;
-        lower = glm::min(lower, p);
-        upper = glm::max(upper, p);
+        if (std::isfinite(p.x + p.y + p.z)) box.add(p);
     }
+    const glm::dvec3 lower(box.lower), upper(box.upper), middle = 0.5 * lower + 0.5 * upper;
     if (!(lower.x <= upper.x)) return std::nullopt;
-    const glm::dvec3 middle = 0.5 * glm::dvec3(lower) + 0.5 * glm::dvec3(upper);
-    const bool far = is_far(reach_of(middle), reach_of(glm::dvec3(upper) - glm::dvec3(lower)));
+    const bool far = is_far(reach_of(middle), reach_of(upper - lower));
     return far ? std::optional(middle) : std::nullopt;
 }
 

@@ -152,8 +152,8 @@ class AsciiStl {
     void finish_facet() {
         if (corners_ == 0 && !in_facet_) return;
         if (corners_ < 3)
-            fail("{}: line {}: the facet has {} vertices, not three; repair the file", file_.name(), file_.line(),
-                 corners_);
+            fail("{}: line {}: the facet has {}, not three; repair the file", file_.name(), file_.line(),
+                 counted("{} vert{ex|ices}", corners_));
         if (mesh_.objects.empty()) start_nameless();
         const auto end = static_cast<uint32_t>(mesh_.corners.size());
         if (corners_ > 3 && mesh_.ends.empty())
@@ -226,7 +226,7 @@ class BinaryStl {
         if (file_.left() > 0)
             scene_.notes.push_back(fmt::format("{} after the last of {} {} no effect",
                                                counted("{} byte{|s}", file_.left()), counted("{} facet{|s}", count),
-                                               file_.left() == 1 ? "has" : "have"));
+                                               counted("{has|have}", file_.left())));
         add_colors();
         return std::move(mesh_);
     }
@@ -240,8 +240,9 @@ class BinaryStl {
             fail("{}: the STL file claims 0 facets and holds bytes for {}; repair the count at byte 80", file_.name(),
                  room);
         if (count > room)
-            fail("{}: claims {} facets, holds {} whole ones in {} bytes; the file is truncated or no STL file",
-                 file_.name(), count, room, file_.size());
+            fail("{}: claims {}, holds {} in {}; the file is truncated or no STL file", file_.name(),
+                 counted("{} facet{|s}", count), counted("{} whole one{|s}", room),
+                 counted("{} byte{|s}", file_.size()));
         return count;
     }
 
@@ -305,7 +306,8 @@ bool is_binary(FileReader& file) {
         // A text without its first line is still one.
         if (first != begin.npos && find_facet(begin.substr(first, 12)) == 0) return false;
         if (file.size() >= header_size) return true;
-        fail("{}: no STL file: it does not begin with \"solid\" and has only {} bytes", file.name(), file.size());
+        fail("{}: no STL file: it does not begin with \"solid\" and has only {}", file.name(),
+             counted("{} byte{|s}", file.size()));
     }
     return file.size() >= header_size && begin.find('\0') != begin.npos;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "loaders/images.h"
 
 namespace peelray {
 
@@ -28,12 +29,7 @@ Texture decode_webp(std::span<const uint8_t> bytes, const std::string& where) {
     const std::unique_ptr<uint8_t, decltype(&WebPFree)> pixels(
         WebPDecodeRGBA(bytes.data(), bytes.size(), &width, &height), &WebPFree);
     if (!pixels) fail("{}: the WebP image's {} bytes are damaged or cut; repair or re-export it", where, bytes.size());
-    Texture texture;
-    texture.width = static_cast<uint32_t>(width);
-    texture.height = static_cast<uint32_t>(height);
-    texture.texels.resize(size_t(texture.width) * texture.height);
-    std::memcpy(texture.texels.data(), pixels.get(), texture.texels.size() * 4);
-    return texture;
+    return texture_of(pixels.get(), width, height);
 }
 
 }  // namespace peelray

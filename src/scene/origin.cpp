@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "scene/box.h"
 #include "scene/moment.h"
 
 namespace peelray {
@@ -162,17 +163,13 @@ class MeshMover {
 
 /// Of all vertices at rest, the skinned ones where their nodes are.
 glm::vec3 middle_of(const Scene& scene, const std::vector<glm::mat4>& worlds) {
-    glm::vec3 lower{INFINITY}, upper{-INFINITY};
+    Box box;
     for (size_t i = 0; i < worlds.size(); i++) {
         if (scene.nodes[i].mesh < 0) continue;
         for (const Primitive& primitive : scene.meshes[size_t(scene.nodes[i].mesh)].primitives)
-            for (const glm::vec3& p : primitive.positions) {
-                const glm::vec3 at = glm::vec3(worlds[i] * glm::vec4(p, 1));
-                lower = glm::min(lower, at);
-                upper = glm::max(upper, at);
-            }
+            for (const glm::vec3& p : primitive.positions) box.add(glm::vec3(worlds[i] * glm::vec4(p, 1)));
     }
-    return 0.5f * lower + 0.5f * upper;
+    return 0.5f * box.lower + 0.5f * box.upper;
 }
 
 }  // namespace

@@ -11,6 +11,13 @@ bool is_single_sided(const Material& material) {
     return !material.double_sided && !bounds_volume;
 }
 
+bool has_single_sided(const Scene& scene) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
+        return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                           [&](const Primitive& p) { return is_single_sided(scene.materials[p.material]); });
+    });
+}
+
 bool has_single_sided(const Scene& scene, const std::vector<uint32_t>& triangle_materials) {
     return std::any_of(triangle_materials.begin(), triangle_materials.end(),
                        [&](uint32_t material) { return is_single_sided(scene.materials[material]); });

@@ -12,6 +12,8 @@ namespace peelray {
 /// light through shows both sides whatever the file says (KHR_materials_volume), for rays must come out again.
 bool is_single_sided(const Material& material);
 
+/// Does anything that the scene has show its front only? Materials that nothing is made of do not count.
+bool has_single_sided(const Scene& scene);
 /// Do any of the triangles show their front only?
 bool has_single_sided(const Scene& scene, const std::vector<uint32_t>& triangle_materials);
 

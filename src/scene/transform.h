@@ -6,8 +6,9 @@
 
 namespace peelray {
 
-inline glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-    const float length = glm::length(v);
+template <typename T>
+glm::vec<3, T> unit_or(const glm::vec<3, T>& v, const glm::vec<3, T>& otherwise) {
+    const T length = glm::length(v);
     return length > 0 && std::isfinite(length) ? v / length : otherwise;
 }
 
@@ -42,13 +43,9 @@ struct BasicPose {
     Vector at, ahead, up;
 
     explicit BasicPose(const glm::mat<4, 4, T>& world)
-        : at(world[3]), ahead(unit(-Vector(world[2]), {0, 0, -1})), up(unit(Vector(world[1]), {0, 1, 0})) {}
-
-  private:
-    static Vector unit(const Vector& v, const Vector& otherwise) {
-        const T length = glm::length(v);
-        return length > 0 && std::isfinite(length) ? v / length : otherwise;
-    }
+        : at(world[3]),
+          ahead(unit_or(-Vector(world[2]), Vector(0, 0, -1))),
+          up(unit_or(Vector(world[1]), Vector(0, 1, 0))) {}
 };
 using Pose = BasicPose<float>;
 

@@ -202,6 +202,7 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
 struct SceneArguments {
     std::string variant;              ///< of its materials
     std::optional<float> point_size;  ///< world units; none: points and lines are left out
+    bool double_sided = false;        ///< whatever its materials say
 };
 
 inline void add_scene(SettingList& list, SceneArguments& a) {
@@ -218,6 +219,10 @@ inline void add_scene(SettingList& list, SceneArguments& a) {
                  "default: they are left out",
          .limits = {
              .least = 0, .open = true, .fault = "points of size {} cannot be seen", .choose = "a diameter above 0"}});
+    add_setting(list, a.double_sided,
+                {.name = "double-sided",
+                 .group = "Scene",
+                 .help = "show all faces from both sides, also those of which a glTF file shows the front only"});
 }
 
 /// What is traced, and of what.
@@ -225,19 +230,11 @@ struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
     uint32_t bounces = 4, spp = 1;
     std::optional<MaterialOverride> material;
-    bool double_sided = false;
     bool floor = false;
 };
 
 /// A list out of the effects, or "none".
 std::optional<ChoiceSet<Effect>> parse_effects(const std::string& text);
-
-inline void add_double_sided(SettingList& list, bool& double_sided, const std::string& group) {
-    add_setting(list, double_sided,
-                {.name = "double-sided",
-                 .group = group,
-                 .help = "show all faces from both sides, also those of which a glTF file shows the front only"});
-}
 
 inline void add_effects(SettingList& list, EffectArguments& a) {
     const std::string group = "Effects";
@@ -262,7 +259,6 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                  .help = "samples per pixel: smooth edges and rough reflections",
                  .limits = kSampleLimits});
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
-    add_double_sided(list, a.double_sided, group);
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});
 }

@@ -104,14 +104,14 @@ class Looks {
 
 }  // namespace
 
-double covered(const Picture& picture) {
+double seen_share(const Picture& picture) {
     double sum = 0;
     for (const glm::vec4& pixel : picture.radiance) sum += double(pixel.w);
     return picture.radiance.empty() ? 0 : sum / double(picture.radiance.size());
 }
 
-CulledView culled_view(const Scene& scene, const Geometry& geometry, const PictureSettings& settings,
-                       const Picture& picture) {
+double culled_share(const Scene& scene, const Geometry& geometry, const PictureSettings& settings,
+                    const Picture& picture) {
     const float aspect = float(settings.width) / float(settings.height);
     const Box box = settings.bounds.value_or(Box{geometry.lower, geometry.upper});
     Looks looks(make_view(settings.camera, aspect, box.lower, box.upper), settings, picture);
@@ -123,16 +123,16 @@ CulledView culled_view(const Scene& scene, const Geometry& geometry, const Pictu
         looks.offer({geometry.positions[t.x], geometry.positions[t.y], geometry.positions[t.z]},
                     [&](double u, double v) { return alpha.is_present(i, u, v); });
     }
-    return {covered(picture), looks.culled()};
+    return looks.culled();
 }
 
-std::string culled_note(const CulledView& view) {
+std::string culled_note(double seen, double culled) {
     // A few pixels of a lamp or a plant do not make the picture of a room.
-    if (view.culled < 0.01 || view.seen > kMostSeenInNote * (view.seen + view.culled)) return {};
+    if (culled < 0.01 || seen > kMostSeenInNote * (seen + culled)) return {};
     return fmt::format(
         "{:.0f} % of the picture is empty because the camera is behind single-sided faces, as inside a room that is "
         "made to be seen from outside: {} shows them",
-        100 * view.culled, setting::double_sided);
+        100 * culled, setting::double_sided);
 }
 
 }  // namespace peelray

@@ -8,7 +8,6 @@
 #include "loaders/load.h"
 #include "motion/animation.h"
 #include "motion/bounds.h"
-#include "scene/sidedness.h"
 #include "workspace/camera_choice.h"
 #include "workspace/scene_changes.h"
 
@@ -39,13 +38,12 @@ Environment choose_environment(const PictureArguments& a, const Scene& scene, co
 }  // namespace
 
 PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : settings_(settings) {
-    auto scene =
-        std::make_unique<Scene>(load_scene(settings.scene, {settings.variant, settings.point_size.value_or(0)}));
+    auto scene = std::make_unique<Scene>(
+        load_scene(settings.scene, {settings.variant, settings.point_size.value_or(0), settings.double_sided}));
     animation_ = choose_animation(settings, *scene, notes);
     if (!animation_.empty()) complete_targets(*scene);
     framed_ = animation_.empty() ? peelray::bounds(*scene, at_rest(*scene)) : bounds_over(*scene, animation_);
     if (settings.material) override_materials(*scene, *settings.material, framed_);
-    if (settings.double_sided) show_both_sides(*scene);
     bounds_ = settings.floor ? add_floor(*scene, framed_) : framed_;
     scene_ = std::move(scene);
     if (animation_.empty())
@@ -95,13 +93,11 @@ void check_visible(const Geometry& geometry, const Scene& scene, bool is_moment,
     const size_t count = geometry.triangles.size();
     if (geometry.zero_area == count && !is_moment)
         fail("{}: {} area; give a file with a surface", scene.name,
-             counted(count == 1 ? "its only triangle has no" : "none of its {} triangles has an", count));
+             count == 1 ? "its only triangle has no" : counted("none of its {} triangles has an", count));
     for (const std::string& text : scene.notes) note(notes, text);
     if (geometry.zero_area > 0)
-        note(notes,
-             fmt::format("{} of {} no area: {} can never be hit", geometry.zero_area,
-                         counted(geometry.zero_area == 1 ? "{} triangle{|s} has" : "{} triangle{|s} have", count),
-                         geometry.zero_area == 1 ? "it" : "they"));
+        note(notes, fmt::format("{} of {} {} can never be hit", geometry.zero_area, counted("{} triangle{|s}", count),
+                                counted("{has no area: it|have no area: they}", geometry.zero_area)));
     for (const std::string& extension : scene.extensions_unsupported)
         note(notes, fmt::format("the extension {} has no effect in this version", extension));
 }

@@ -3,11 +3,11 @@
 #include "base/error.h"
 
 #ifdef PEELRAY_WITH_REFERENCE
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "base/text.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {
@@ -24,16 +24,9 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     made.picture = tracer.render(settings, progress);
     const auto done = Clock::now();
 
-    PictureStats& stats = made.stats;
-    stats.machine = {fmt::format("{} CPU threads", std::max(1u, std::thread::hardware_concurrency())), "cpu",
-                     PathTracer::version(), ""};
-    stats.width = made.picture.width;
-    stats.height = made.picture.height;
-    stats.triangles = scene.triangles();
-    stats.box = scene.bounds();
-    stats.origin = scene.scene().origin;
-    stats.rays = made.picture.rays;
-    RenderStats& times = stats.render;
+    const std::string threads = counted("{} CPU thread{|s}", std::max(1u, std::thread::hardware_concurrency()));
+    made.stats = picture_stats({threads, "cpu", PathTracer::version(), ""}, scene, made.picture);
+    RenderStats& times = made.stats.render;
     times.tracer = Tracer::reference;
     times.timed = true;
     times.build_ms = ms(built - start);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/setting.h"
+#include "base/text.h"
 #include "settings/limits.h"
 
 namespace peelray {
@@ -14,8 +15,20 @@ Machine machine_of(const Device& device) {
     return {info.name, info.kind, info.driver, info.api_version};
 }
 
+PictureStats picture_stats(const Machine& machine, const PosedScene& scene, const Picture& picture) {
+    PictureStats stats;
+    stats.machine = machine;
+    stats.width = picture.width;
+    stats.height = picture.height;
+    stats.triangles = scene.triangles();
+    stats.box = scene.bounds();
+    stats.origin = scene.scene().origin;
+    stats.rays = picture.rays;
+    return stats;
+}
+
 std::string count_of_cubes(const SceneCubes::Stats& cubes) {
-    return fmt::format("{} cube{} of up to {}", cubes.cubes(), cubes.cubes() == 1 ? "" : "s", cubes.resolution);
+    return fmt::format("{} of up to {}", counted("{} cube{|s}", cubes.cubes()), cubes.resolution);
 }
 
 std::string room_note(const SceneCubes::Stats& cubes) {
@@ -34,17 +47,16 @@ std::string cut_note(const RayCounts& rays, uint32_t bounces) {
     if (share <= kNoticed) return {};
     const uint32_t more = std::min(2 * bounces, uint32_t(kBounceLimits.most));
     const std::string text = fmt::format(
-        "{} rays ({:.1f} % of the camera's) would pass through more glass than {} {} follows: they see the environment "
-        "there",
-        rays.cut_refraction, 100 * share, setting::bounces, bounces);
+        "{} ({:.1f} % of the camera's) would pass through more glass than {} {} follows: {} the environment there",
+        counted("{} ray{|s}", rays.cut_refraction), 100 * share, setting::bounces, bounces,
+        counted("{it sees|they see}", rays.cut_refraction));
     return more > bounces ? fmt::format("{}; {} {} goes further", text, setting::bounces, more) : text;
 }
 
 std::string crowded_note(const RayCounts& rays) {
     if (rays.crowded == 0) return {};
-    return fmt::format(
-        "{} rays were in more than {} overlapping volumes at once: those of the largest do not count there",
-        rays.crowded, MEDIA_TOGETHER);
+    return fmt::format("{} in more than {} overlapping volumes at once: those of the largest do not count there",
+                       counted("{} ray{|s} {was|were}", rays.crowded), MEDIA_TOGETHER);
 }
 
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {

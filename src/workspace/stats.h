@@ -7,6 +7,7 @@
 
 #include "gpu/device.h"
 #include "render/renderer.h"
+#include "workspace/posed_scene.h"
 
 namespace peelray {
 
@@ -33,6 +34,9 @@ struct PictureStats {
     /// Were rays traced in layered depth cubes?
     bool has_cubes() const { return render.cubes.bodies > 0; }
 };
+
+/// What any tracer can say of its picture of the scene; of RenderStats nothing.
+PictureStats picture_stats(const Machine& machine, const PosedScene& scene, const Picture& picture);
 
 /// How rays from a file were traced.
 struct TraceStats {

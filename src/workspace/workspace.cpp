@@ -1,6 +1,5 @@
 #include "workspace/workspace.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
@@ -35,8 +34,7 @@ void Workspace::check(Tracer tracer) {
 void Workspace::renew_device() {
     renderer_.reset();
     device_.reset();
-    noted_ambient_ = noted_tolerance_ = noted_culled_ = noted_cut_ = false;
-    noted_room_ = {};
+    noted_ = {};
 }
 
 void Workspace::check_validation() const {
@@ -55,14 +53,14 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         check_interrupt();
         if (progress) progress(share);
     };
-    if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_ambient_, true))
+    if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
     MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, report)
                                                             : render_on_device(settings, report);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
-    if (!cut.empty() && !std::exchange(noted_cut_, true)) note(notes_, cut);
+    if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
     const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
-    if (!crowded.empty() && !std::exchange(noted_crowded_, true)) note(notes_, crowded);
+    if (!crowded.empty() && !std::exchange(noted_.crowded, true)) note(notes_, crowded);
     note_culled(settings, made.picture);
     return in_world(std::move(made));
 }
@@ -70,11 +68,12 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
 /// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at
 /// only where next to nothing is.
 void Workspace::note_culled(const PictureSettings& settings, const Picture& picture) {
-    if (noted_culled_ || std::ranges::none_of(scene_.scene().materials, is_single_sided)) return;
-    if (covered(picture) > kMostSeenInNote) return;
-    const std::string text = culled_note(culled_view(scene_.scene(), scene_.geometry(), settings, picture));
+    if (noted_.culled || !has_single_sided(scene_.scene())) return;
+    const double seen = seen_share(picture);
+    if (seen > kMostSeenInNote) return;
+    const std::string text = culled_note(seen, culled_share(scene_.scene(), scene_.geometry(), settings, picture));
     if (text.empty()) return;
-    noted_culled_ = true;
+    noted_.culled = true;
     note(notes_, text);
 }
 
@@ -112,28 +111,21 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
 /// Once for all pictures; of too little room once for each hit test that is left.
 void Workspace::note_cubes(const RenderStats& stats) {
     const std::string room = room_note(stats.cubes);
-    if (!room.empty() && !noted_room_.has(stats.hit)) note(notes_, room);
-    if (!room.empty()) noted_room_.add(stats.hit);
+    if (!room.empty() && !noted_.room.has(stats.hit)) note(notes_, room);
+    if (!room.empty()) noted_.room.add(stats.hit);
     const std::string tolerance = tolerance_note(stats.bodies, stats.choice);
-    if (!tolerance.empty() && !std::exchange(noted_tolerance_, true)) note(notes_, tolerance);
+    if (!tolerance.empty() && !std::exchange(noted_.tolerance, true)) note(notes_, tolerance);
 }
 
 MadePicture Workspace::render_on_device(const RenderSettings& settings, const Progress& progress) {
     RenderResult result = renderer_for(settings).render(settings, progress);
     device_->check_validation();
     MadePicture made;
-    PictureStats& stats = made.stats;
-    stats.machine = machine_of(*device_);
-    stats.width = result.width;
-    stats.height = result.height;
-    stats.triangles = scene_.triangles();
-    stats.box = scene_.bounds();
-    stats.origin = scene_.scene().origin;
-    stats.rays = result.rays;
-    stats.render = std::move(result.stats);
+    made.stats = picture_stats(machine_of(*device_), scene_, result);
+    made.stats.render = std::move(result.stats);
     for (const RayCostField& field : kRayCostFields)
-        stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
-    note_cubes(stats.render);
+        made.stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
+    note_cubes(made.stats.render);
     made.picture = std::move(result);
     return made;
 }

@@ -79,13 +79,16 @@ class Workspace {
         HitTest hit;
         bool operator==(const Kind&) const = default;
     } kind_{};
-    std::optional<double> posed_;    ///< the moment that the renderer is in
-    bool noted_ambient_ = false;     ///< said that a tracer has none
-    bool noted_tolerance_ = false;   ///< said that it is too small
-    bool noted_culled_ = false;      ///< said that the camera is behind single-sided faces
-    bool noted_cut_ = false;         ///< said that rays end too early
-    bool noted_crowded_ = false;     ///< said that rays are in too many media
-    ChoiceSet<HitTest> noted_room_;  ///< said that these stand for what found no room
+    std::optional<double> posed_;  ///< the moment that the renderer is in
+    /// What has been said on this device, and is not said again.
+    struct Noted {
+        bool ambient = false;     ///< that a tracer has none
+        bool tolerance = false;   ///< that it is too small
+        bool culled = false;      ///< that the camera is behind single-sided faces
+        bool cut = false;         ///< that rays end too early
+        bool crowded = false;     ///< that rays are in too many media
+        ChoiceSet<HitTest> room;  ///< that these stand for what found no room
+    } noted_;
 };
 
 }  // namespace peelray

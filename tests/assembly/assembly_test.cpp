@@ -6,8 +6,6 @@
 
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
-#include <random>
 
 #include "assembly/grouping.h"
 #include "base/error.h"

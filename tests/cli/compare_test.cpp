@@ -1,9 +1,6 @@
 // `peelray compare`: what it writes, that its commands make its pictures again, and what it refuses.
 #include <signal.h>
 
-#include <cmath>
-#include <thread>
-
 #include "cli/program_fixture.h"
 #include "image/metrics.h"
 

@@ -1,13 +1,10 @@
 // Scenes far from the world's origin, from the command line: pictures, rays and numbers.
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <limits>
 
 #include "cli/channels.h"
+#include "cli/hits.h"
 #include "cli/program_fixture.h"
 #include "image/image.h"
-#include "image/npy.h"
 
 namespace peelray {
 namespace {
@@ -131,9 +128,7 @@ TEST_F(FarCommand, RaysAreThoseOfTheWorld) {
     expect_done(
         run({"trace", in("cube.obj"), "--rays", in("rays.npy"), "--out", out("hits.npy"), "--stats", out("t.json")}),
         {"hits.npy", "t.json"});
-    const std::string file = get(out("hits.npy"));
-    std::vector<HitRecord> hits(3);
-    std::memcpy(hits.data(), file.data() + file.find('\n') + 1, 3 * sizeof(HitRecord));
+    const std::vector<HitRecord> hits = hits_of(get(out("hits.npy")), 3);
     EXPECT_NEAR(hits[0].t, 1.99, 1e-6);
     EXPECT_EQ(hits[0].triangle, 0u);
     EXPECT_NEAR(hits[0].u + hits[0].v, 0.78125, 1e-4);

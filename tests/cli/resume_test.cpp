@@ -143,7 +143,7 @@ TEST_F(Resume, FramesOfUnknownOriginAreRenderedAgain) {
     ASSERT_EQ(sequence("f%d.png", {"--tracer", "none", "--frames", "0:1", "--aov", "depth", "--floor"}).status, 0);
     const Outcome mixed =
         sequence("f%d.png", {"--tracer", "none", "--frames", "0:3", "--aov", "depth", "--floor", "--resume"});
-    EXPECT_NE(mixed.out.find("2 frames of 0 to 2, 1 were there already"), std::string::npos) << mixed.out;
+    EXPECT_NE(mixed.out.find("2 frames of 0 to 2, 1 was there already"), std::string::npos) << mixed.out;
     EXPECT_NE(mixed.err.find("2 of the frames that are there"), std::string::npos) << mixed.err;
     const auto mixture = contents();
     remove_outputs();
@@ -333,7 +333,7 @@ TEST_F(Resume, AShardTakesItsPositionsInTheRange) {
     fs::remove(out("f6.png"));
     const Outcome rest = sequence("f%d.png", {"--frames", "3:8", "--tracer", "none", "--shard", "1/2", "--resume"});
     expect_done(rest, {"f%d.png.json", "f4.png", "f6.png"});
-    EXPECT_NE(rest.out.find("1 frame of 3 to 7 (shard 1/2), 1 were there already"), std::string::npos) << rest.out;
+    EXPECT_NE(rest.out.find("1 frame of 3 to 7 (shard 1/2), 1 was there already"), std::string::npos) << rest.out;
 }
 
 }  // namespace

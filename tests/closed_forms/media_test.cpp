@@ -2,83 +2,12 @@
 // media are that of the smaller volume counts, from whichever side and in whichever order the file has them.
 #include <pictures.h>
 
+#include "layers.h"
+
 namespace peelray {
 namespace {
 
 using MediaTest = PictureTest;
-
-glm::dvec3 wall_light(const glm::dvec3& p) {
-    return {1 + 0.2 * p.x, 1 - 0.2 * p.y, 1 + 0.1 * (p.x + p.y)};
-}
-
-void add_lit_wall(Stage& stage) {
-    stage.add(gradient_quad({-6, -6, -2}, {12, 0, 0}, {0, 12, 0}, [](glm::vec3 p) { return glm::vec3(wall_light(p)); }),
-              unlit({1, 1, 1}));
-}
-
-/// What is below a plane normal to z.
-struct Layer {
-    double z, ior;
-    glm::dvec3 absorption{0};
-};
-
-/// What a ray towards -z that starts in `medium` sees of the backdrop through layers, by Snell's law, Fresnel and
-/// Beer-Lambert; `more`: a bound on what is reflected to and fro in them.
-struct Seen {
-    glm::dvec3 light;
-    double more = 0;
-    bool off = false;  ///< beside the backdrop
-};
-Seen through(const ViewRay& ray, const std::vector<Layer>& layers, Layer medium = {0, 1}) {
-    const glm::dvec2 tangential = glm::dvec2(ray.direction) * medium.ior;  // times the index: the same everywhere
-    const double sine = glm::length(tangential);
-    const auto cosine = [&](double ior) { return std::sqrt(1 - sine * sine / (ior * ior)); };
-    Seen seen{glm::dvec3(1)};
-    glm::dvec3 at = ray.origin;
-    double reflected = 0;
-    const auto advance = [&](double z) {
-        const double length = (at.z - z) / cosine(medium.ior);
-        at += glm::dvec3(tangential / medium.ior, -cosine(medium.ior)) * length;
-        seen.light *= glm::exp(-medium.absorption * length);
-    };
-    for (const Layer& layer : layers) {
-        advance(layer.z);
-        const double r = fresnel(cosine(medium.ior), medium.ior, layer.ior);
-        seen.light *= 1 - r;
-        seen.more += r * reflected * 2;
-        reflected += r;
-        medium = layer;
-    }
-    advance(-2);
-    seen.light *= wall_light(at);
-    seen.off = std::abs(at.x) > 5.7 || std::abs(at.y) > 5.7;
-    return seen;
-}
-
-/// `start`: what the camera is in.
-Tally tally_layers(const Picture& picture, const Camera& camera, const std::vector<Layer>& layers,
-                   const Layer& start = {0, 1}) {
-    Tally result;
-    for (uint32_t y = 0; y < picture.height; y++)
-        for (uint32_t x = 0; x < picture.width; x++) {
-            const ViewRay ray = view_ray(camera, picture.width, picture.height, x + 0.5, y + 0.5);
-            const Seen seen = through(ray, layers, start);
-            if (seen.off) continue;
-            const glm::dvec3 got = radiance_at(picture, x, y);
-            bool right = true;
-            for (int c = 0; c < 3; c++)
-                right &= got[c] >= seen.light[c] - 2e-3 && got[c] <= seen.light[c] + seen.more * 2 + 2e-3;
-            result.add(right, [&] {
-                return fmt::format("pixel {},{}: {}, expected {} to {:.5f} more", x, y, text(got), text(seen.light),
-                                   seen.more * 2);
-            });
-        }
-    return result;
-}
-
-Primitive plate(float front, float back, float half = 4) {
-    return box({-half, -half, back}, {half, half, front});
-}
 
 Material liquid(float ior = 1.33f) {
     Material m = clear_glass(ior);
@@ -182,12 +111,7 @@ TEST_F(MediaTest, InstancesOfOneBodyAreOneBody) {
 /// degrees glass would reflect totally into air, not into the liquid.
 TEST_F(MediaTest, NoAirBetweenWallsThatTouch) {
     Stage stage;
-    stage.add(faces({{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
-                     {{-1, -1, -1}, {1, -1, -1}, {1, -1, 1}, {-1, -1, 1}},
-                     {{-1, 1, 1}, {1, 1, 1}, {1, -1, -1}, {-1, -1, -1}},
-                     {{1, -1, 1}, {1, -1, -1}, {1, 1, 1}},
-                     {{-1, -1, 1}, {-1, 1, 1}, {-1, -1, -1}}}),
-              clear_glass());
+    stage.add(prism(), clear_glass());
     stage.add(faces({{{1, -1, -1}, {-1, -1, -1}, {-1, 1, -1}, {1, 1, -1}},
                      {{-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1}},
                      {{-1, -1, -1}, {1, -1, -1}, {1, 1, 1}, {-1, 1, 1}},
@@ -325,26 +249,19 @@ TEST_F(MediaTest, DrinkInACupHasNoSpeckle) {
         }
         return points;
     };
-    const auto can = [&](float radius, float bottom, float top, bool inside_out) {
+    const auto can = [&](float radius, float bottom, float top) {
         const auto low = ring(radius, bottom), high = ring(radius, top);
         std::vector<std::vector<glm::vec3>> polygons = {{low.rbegin(), low.rend()}, high};
         for (size_t i = 0; i < low.size(); i++) {
             const size_t k = (i + 1) % low.size();
             polygons.push_back({low[i], low[k], high[k], high[i]});
         }
-        if (inside_out)
-            for (auto& polygon : polygons) std::reverse(polygon.begin(), polygon.end());
         return faces(polygons);
     };
     const auto picture = [&](float reach) {
         Stage stage;
-        Primitive wall = can(1, 0, 2, false), hollow = can(0.9f, 0.1f, 1.9f, true);
-        const auto offset = uint32_t(wall.positions.size());
-        wall.positions.insert(wall.positions.end(), hollow.positions.begin(), hollow.positions.end());
-        wall.normals.insert(wall.normals.end(), hollow.normals.begin(), hollow.normals.end());
-        for (const glm::uvec3& t : hollow.triangles) wall.triangles.push_back(t + offset);
-        stage.add(wall, clear_glass());
-        stage.add(can(0.9f + reach, 0.1f - reach, 1.5f, false), liquid());
+        stage.add(joined(can(1, 0, 2), inside_out(can(0.9f, 0.1f, 1.9f))), clear_glass());
+        stage.add(can(0.9f + reach, 0.1f - reach, 1.5f), liquid());
         RenderSettings settings = settings_for(perspective({0, 1.6f, 5}, {0, 1, 0}, 30), 40);
         settings.spp = 8;
         settings.bounces = 6;

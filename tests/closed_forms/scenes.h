@@ -79,6 +79,12 @@ inline Material thin_glass(float ior = 1.5f) {
     m.thickness = 0;
     return m;
 }
+/// Reflects nothing.
+inline Material emitting(const glm::vec3& light) {
+    Material m = lambert({0, 0, 0});
+    m.emissive = light;
+    return m;
+}
 
 // --- Holes ---
 
@@ -158,6 +164,31 @@ inline Primitive turned(Primitive shape, float degrees, const glm::vec3& axis) {
     for (auto& p : shape.positions) p = q * p;
     for (auto& n : shape.normals) n = q * n;
     return shape;
+}
+
+/// Faces the other way.
+inline Primitive inside_out(Primitive shape) {
+    for (auto& n : shape.normals) n = -n;
+    for (auto& t : shape.triangles) std::swap(t.y, t.z);
+    return shape;
+}
+
+/// Positions, normals and triangles of both.
+inline Primitive joined(Primitive a, const Primitive& b) {
+    const auto offset = uint32_t(a.positions.size());
+    a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+    a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
+    for (const glm::uvec3& t : b.triangles) a.triangles.push_back(t + offset);
+    return a;
+}
+
+/// The half of the cube from -1 to 1 where y < z: walls at z = 1 and y = -1, and the slanted one.
+inline Primitive prism() {
+    return faces({{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
+                  {{-1, -1, -1}, {1, -1, -1}, {1, -1, 1}, {-1, -1, 1}},
+                  {{-1, 1, 1}, {1, 1, 1}, {1, -1, -1}, {-1, -1, -1}},
+                  {{1, -1, 1}, {1, -1, -1}, {1, 1, 1}},
+                  {{-1, -1, 1}, {-1, 1, 1}, {-1, -1, -1}}});
 }
 
 // --- Cameras ---

@@ -78,7 +78,8 @@ TEST_F(SidesTest, InstancesAndTheirReflectionsFaceOutwards) {
     // From outside a closed body is the same with and without its backs; inside out it shows its far half only.
     tally(render(stage, white, settings_for(camera, 96)), render(both, white, settings_for(camera, 96)), 0)
         .expect(0, 9000);
-    for (auto& triangle : stage.scene.meshes[0].primitives[0].triangles) std::swap(triangle.y, triangle.z);
+    Primitive& ball = stage.scene.meshes[0].primitives[0];
+    ball = inside_out(ball);
     stage.add(sphere({0, 0, 0}, 0.5f, 24), unlit(glm::vec3(kNear)));
     const Camera close = perspective({0, 0, 3}, {0, 0, 0}, 60);
     tally(render(stage, black, settings_for(close, 96)), close, 1e-5,
@@ -94,9 +95,7 @@ TEST_F(SidesTest, InstancesAndTheirReflectionsFaceOutwards) {
 TEST_F(SidesTest, AnInvertedHullIsAnOutline) {
     Stage stage;
     stage.add(sphere({0, 0, 0}, 1, 96), unlit(glm::vec3(kSide)));
-    Primitive hull = sphere({0, 0, 0}, 1.2f, 96);
-    for (auto& triangle : hull.triangles) std::swap(triangle.y, triangle.z);
-    stage.add(hull, single_sided(unlit({0, 0, 0})));
+    stage.add(inside_out(sphere({0, 0, 0}, 1.2f, 96)), single_sided(unlit({0, 0, 0})));
     const Camera camera = orthographic({0.4f, 0.3f, 4}, {0, 0, 0}, 3);
     tally(render(stage, white, settings_for(camera, 128)), camera, 1e-5,
           [](const ViewRay& ray) -> std::optional<glm::dvec3> {
@@ -171,9 +170,7 @@ TEST_F(SidesTest, AnInvertedHullDoesNotDarkenWhatItSurrounds) {
     stage.sun({0.2f, -1, -0.3f}, glm::vec3(kPi));
     const Camera camera = perspective({1, 3, 6}, {0, 1, 0}, 50);
     const RenderResult bare = render(stage, black, settings_for(camera, 96));
-    Primitive hull = sphere({0, 1.5f, 0}, 1.05f, 32);
-    for (auto& triangle : hull.triangles) std::swap(triangle.y, triangle.z);
-    stage.add(hull, single_sided(unlit({0, 0, 1})));
+    stage.add(inside_out(sphere({0, 1.5f, 0}, 1.05f, 32)), single_sided(unlit({0, 0, 1})));
     const RenderResult outlined = render(stage, black, settings_for(camera, 96));
     Tally ball;
     size_t lit = 0;

@@ -44,14 +44,9 @@ std::function<std::optional<glm::dvec3>(const ViewRay&)> left_and_right(const gl
     };
 }
 
-Material without_light() {
-    return lambert({0, 0, 0});
-}
-
 TEST_F(TextureTest, EmissionIsTheFactorTimesTheTexture) {
     Stage stage;
-    Material m = without_light();
-    m.emissive = {3, 1, 0.5f};
+    Material m = emitting({3, 1, 0.5f});
     m.emissive_texture = 0;
     stage.add(texture_square(), m);
     stage.scene.textures = {two_texels({255, 128, 10}, {0, 60, 200})};
@@ -63,9 +58,8 @@ TEST_F(TextureTest, EmissionIsTheFactorTimesTheTexture) {
 TEST_F(TextureTest, EachTextureHasItsOwnCoordinates) {
     // Emission shows set 1, which runs the other way; the base colour set 0, turned by a quarter: left becomes top.
     Stage stage;
-    Material m = without_light();
+    Material m = emitting(glm::vec3(1));
     m.base_color = glm::vec3(1);
-    m.emissive = glm::vec3(1);
     m.base_color_texture = 0;
     m.base_color_texture.uv_matrix = glm::mat2(0, 1, 1, 0);  // u and v change places
     m.emissive_texture = 1;
@@ -87,8 +81,7 @@ TEST_F(TextureTest, EachTextureHasItsOwnCoordinates) {
 
 TEST_F(TextureTest, OffsetAndScaleComeAfterTheSet) {
     Stage stage;
-    Material m = without_light();
-    m.emissive = glm::vec3(1);
+    Material m = emitting(glm::vec3(1));
     m.emissive_texture = 0;
     m.emissive_texture.uv_matrix = glm::mat2(2, 0, 0, 2);
     m.emissive_texture.uv_offset = {0.5f, 0.25f};
@@ -138,7 +131,7 @@ TEST_F(TextureTest, RoughnessIsTheFactorTimesTheTexture) {
 TEST_F(TextureTest, SpecularTexturesScaleTheReflection) {
     // A smooth dielectric along its normal reflects f0 of a white sky; its base is black.
     Stage stage;
-    Material m = without_light();
+    Material m = lambert({0, 0, 0});
     m.ior = 3;  // f0 = 1/4
     m.roughness = 0;
     m.specular = 0.8f;
@@ -184,8 +177,7 @@ TEST_F(TextureTest, OneImageServesAsColourAndAsNumbers) {
 
 TEST_F(TextureTest, SixteenBitsAreKept) {
     Stage stage;
-    Material m = without_light();
-    m.emissive = glm::vec3(1);
+    Material m = emitting(glm::vec3(1));
     m.emissive_texture = 0;
     stage.add(texture_square(), m);
     Texture t = two_texels({}, {});

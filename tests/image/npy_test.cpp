@@ -1,5 +1,4 @@
 // NumPy's files: every legal spelling of the header, no illegal one.
-#include <cmath>
 #include <cstring>
 #include <limits>
 

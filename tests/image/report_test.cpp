@@ -3,7 +3,6 @@
 #include "base/infinity.h"
 
 #include <cmath>
-#include <limits>
 
 #include "temp_folder.h"
 

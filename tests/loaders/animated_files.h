@@ -1,7 +1,6 @@
 // Small glTF files with a skin and animations, for the tests.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "loaders/scene_files.h"
@@ -47,18 +46,8 @@ inline json lifted() {
     return gltf;
 }
 
-inline bool has_note(const Scene& scene, const std::string& words) {
-    return std::any_of(scene.notes.begin(), scene.notes.end(),
-                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
-}
-
 inline std::vector<glm::vec3> positions_at(const Scene& scene, double time) {
     return flatten(scene, moment_of(scene, "all", time)).positions;
-}
-
-inline void expect_near(const glm::vec3& a, const glm::vec3& b) {
-    EXPECT_LT(glm::distance(a, b), 1e-5f)
-        << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
 }
 
 /// At some moments: every vertex and normal is a number, or one line says what is wrong.

@@ -3,9 +3,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 
 #pragma GCC diagnostic push
@@ -273,15 +271,6 @@ void compress_view(json& gltf, size_t accessor, const std::string& bytes, size_t
                                                      {"filter", filter}};
     if (std::string(mode) == "ATTRIBUTES") view["byteStride"] = stride;
     gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
-}
-
-std::string glb_of(const json& gltf, const std::string& binary) {
-    const auto chunk = [](std::string bytes, uint32_t type, char filler) {
-        bytes.resize((bytes.size() + 3) / 4 * 4, filler);
-        return pack<uint32_t>({static_cast<uint32_t>(bytes.size()), type}) + bytes;
-    };
-    const std::string body = chunk(gltf.dump(), 0x4E4F534A, ' ') + chunk(binary, 0x004E4942, '\0');
-    return "glTF" + pack<uint32_t>({2, static_cast<uint32_t>(body.size() + 12)}) + body;
 }
 
 }  // namespace peelray::testing

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -71,7 +70,13 @@ std::string meshopt_stream_1(const std::string& bytes, size_t stride, const std:
 /// Values as a filter of that name stores them: four to an element, for EXPONENTIAL as many as there are.
 std::string meshopt_filtered(const std::vector<float>& values, size_t stride, const std::string& filter, int bits);
 
-/// A file of one mesh, as binary glTF: views of the buffer are those of the JSON.
-std::string glb_of(const json& gltf, const std::string& binary);
+/// The compressed file shows what Box.glb beside it does; skipped where the models are not here.
+inline void expect_like_box(const std::string& name, const std::filesystem::path& models) {
+    if (!std::filesystem::exists(models)) GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
+    const Geometry box = flatten(load_scene((models / "Box.glb").string())),
+                   compressed = flatten(load_scene((models / name).string()));
+    EXPECT_EQ(compressed.triangles.size(), box.triangles.size());
+    EXPECT_LT(glm::distance(compressed.lower, box.lower) + glm::distance(compressed.upper, box.upper), 1e-3f);
+}
 
 }  // namespace peelray::testing

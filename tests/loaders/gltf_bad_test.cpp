@@ -24,8 +24,7 @@ TEST(GltfBad, MissingEmptyAndForeignFiles) {
 TEST(GltfBad, TruncatedGlb) {
     const TempFolder folder;
     const std::string text = R"({"asset": {"version": "2.0"}}   )";
-    const std::string whole =
-        "glTF" + pack<uint32_t>({2, uint32_t(20 + text.size()), uint32_t(text.size()), 0x4E4F534A}) + text;
+    const std::string whole = glb(text, "");
     EXPECT_MENTIONS(error_of(folder.write("whole.glb", whole)), "no triangles");
     for (size_t size = 1; size < whole.size(); ++size) error_of(folder.write("cut.glb", whole.substr(0, size)));
     std::string damaged = whole;
@@ -37,13 +36,10 @@ TEST(GltfBad, TruncatedGlb) {
 TEST(GltfBad, BinaryChunkLongerThanTheGlb) {
     const TempFolder folder;
     const std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":8}]})";
-    const auto glb = [&](uint32_t size) {
-        return "glTF" + pack<uint32_t>({2, uint32_t(12 + 8 + text.size() + 8 + 8), uint32_t(text.size()), 0x4E4F534A}) +
-               text + pack<uint32_t>({size, 0x004E4942, 0, 0});
-    };
-    ASSERT_EQ(text.size() % 4, 0u);
-    EXPECT_MENTIONS(error_of(folder.write("whole.glb", glb(8))), "no triangles");
-    EXPECT_MENTIONS(error_of(folder.write("long.glb", glb(16))), "truncated");
+    std::string file = glb(text, std::string(8, '\0'));
+    EXPECT_MENTIONS(error_of(folder.write("whole.glb", file)), "no triangles");
+    file[file.size() - 16] = 16;  // the chunk's length
+    EXPECT_MENTIONS(error_of(folder.write("long.glb", file)), "truncated");
 }
 
 // Every value of a good file in turn replaced by one of another type, or by a number that is too large.
@@ -209,7 +205,7 @@ TEST(GltfBad, IndicesAndCounts) {
     EXPECT_MENTIONS(line, "index 2 is 4, the primitive has 4 vertices");
     gltf = square();
     primitive(gltf)["attributes"]["NORMAL"] = add_accessor(gltf, pack<float>({0, 0, 1}), 5126, "VEC3", 1);
-    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 elements, POSITION has 4");
+    EXPECT_MENTIONS(error_of(folder, gltf), "NORMAL has 1 element, POSITION has 4");
     gltf = square();
     primitive(gltf)["material"] = 0;
     EXPECT_MENTIONS(error_of(folder, gltf), "material");
@@ -263,14 +259,6 @@ TEST(GltfBad, RequiredExtensions) {
     }
 }
 
-json textured(const std::string& uri) {
-    json gltf = square();
-    gltf["images"] = {{{"uri", uri}}};
-    gltf["textures"] = {{{"source", 0}}};
-    gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
-    return gltf;
-}
-
 TEST(GltfBad, Images) {
     const TempFolder folder;
     const Scene gone = load(folder, textured("gone.png"));  // the factor is used, and one note says so
@@ -318,6 +306,25 @@ TEST(GltfBad, Images) {
     gltf["materials"][0] = {{"normalTexture", {{"index", 0}}}};
     gltf["materials"][0]["normalTexture"]["index"] = 1;
     EXPECT_MENTIONS(error_of(folder, gltf), "the file has 1 texture");
+}
+
+TEST(GltfBad, TexturesWithoutAnImage) {
+    const TempFolder folder;
+    json gltf = textured("gone.png");
+    gltf["textures"][0] = json::object();
+    EXPECT_EQ(all_notes(load(folder, gltf)),
+              "1 texture ignored that names no image, or only in an extension that is unknown\n");
+    gltf["extensionsUsed"] = {"EXT_texture_future"};
+    gltf["textures"][0] = {{"extensions", {{"EXT_texture_future", {{"source", 0}}}}}};
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "1 texture ignored that names no image, or only in an extension");
+}
+
+TEST(GltfBad, BracesInNamesStayInNotes) {
+    const TempFolder folder;
+    EXPECT_MENTIONS(all_notes(load(folder, textured("{a|b}{}.png"))), "the image file {a|b}{}.png is missing");
+    json gltf = square();
+    gltf["nodes"][0]["extensions"]["EXT_{a|b}{}"] = json::object();
+    EXPECT_MENTIONS(all_notes(load(folder, gltf)), "EXT_{a|b}{}: without effect");
 }
 
 }  // namespace

@@ -253,12 +253,7 @@ TEST(GltfDraco, WrongDescriptionsOfTheData) {
 }
 
 TEST(GltfDraco, SampleLooksLikeItsTwin) {
-    const std::filesystem::path models = std::filesystem::path(PEELRAY_MODELS) / "gltf";
-    if (!std::filesystem::exists(models)) GTEST_SKIP() << "no models at " << models << "; see shared/models/README.md";
-    const Geometry box = flatten(load_scene((models / "Box.glb").string())),
-                   draco = flatten(load_scene((models / "Box-Draco/Box.gltf").string()));
-    EXPECT_EQ(draco.triangles.size(), box.triangles.size());
-    EXPECT_LT(glm::distance(draco.lower, box.lower) + glm::distance(draco.upper, box.upper), 1e-3f);
+    expect_like_box("Box-Draco/Box.gltf", PEELRAY_MODELS "/gltf");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <webp/encode.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "loaders/animated_files.h"
@@ -23,29 +22,18 @@ std::string webp_of(uint32_t left, uint32_t right) {
     return bytes;
 }
 
-constexpr uint32_t blue = 0xFFFF0000, yellow = 0x8000FFFF, red = 0xFF0000FF;
-
-/// The square with a texture of the base colour, which comes from image 0, a PNG whose first texel is red.
-json textured() {
-    json gltf = square();
-    gltf["images"] = {{{"uri", "t.png"}}};
-    gltf["textures"] = {{{"source", 0}}};
-    gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
-    primitive(gltf)["material"] = 0;
-    primitive(gltf)["attributes"]["TEXCOORD_0"] =
-        add_accessor(gltf, pack<float>({0, 0, 1, 0, 1, 1, 0, 1}), 5126, "VEC2", 4);
-    return gltf;
-}
+constexpr uint32_t blue = 0xFFFF0000, yellow = 0x8000FFFF;
+constexpr uint32_t red = 0xFF0000FF;  // the first texel of tiny_png()
 
 TEST(GltfImages, WebP) {
     const TempFolder folder;
     folder.write("t.png", tiny_png());
     folder.write("t.webp", webp_of(blue, yellow));
-    json gltf = textured();
-    gltf["images"][0]["uri"] = "t.webp";  // as a plain source, which the format does not allow and exporters write
+    // As a plain source, which the format does not allow and exporters write.
+    json gltf = textured("t.webp");
     EXPECT_EQ(load(folder, gltf).textures.at(0).texels, (std::vector<uint32_t>{blue, yellow}));
 
-    gltf = textured();
+    gltf = textured("t.png");
     gltf["images"].push_back({{"uri", "t.webp"}, {"mimeType", "image/webp"}});
     gltf["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
     gltf["extensionsUsed"] = {"EXT_texture_webp"};
@@ -64,8 +52,7 @@ TEST(GltfImages, WebP) {
 
 TEST(GltfImages, DamagedWebP) {
     const TempFolder folder;
-    json gltf = textured();
-    gltf["images"][0]["uri"] = "t.webp";
+    json gltf = textured("t.webp");
     const std::string good = webp_of(blue, yellow);
     for (size_t length = 12; length + 2 < good.size(); ++length) {
         folder.write("t.webp", good.substr(0, length));
@@ -85,7 +72,7 @@ TEST(GltfImages, FormatsWithoutReader) {
                                std::string(80, '\0'));
     for (const auto& [name, file, type] :
          {std::tuple("KHR_texture_basisu", "t.ktx2", "KTX2"), std::tuple("EXT_texture_avif", "t.avif", "AVIF")}) {
-        json gltf = textured();
+        json gltf = textured("t.png");
         gltf["images"].push_back({{"uri", file}});
         gltf["textures"][0]["extensions"][name]["source"] = 1;
         gltf["extensionsUsed"] = {name};

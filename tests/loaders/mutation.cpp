@@ -89,7 +89,7 @@ std::vector<Sample> glb_samples() {
     gltf["buffers"] = json::array({{{"byteLength", bytes.size()}}});
     gltf["bufferViews"] =
         json::array({{{"buffer", 0}, {"byteLength", 48}}, {{"buffer", 0}, {"byteOffset", 48}, {"byteLength", 12}}});
-    return {{"a.glb", glb_of(gltf, bytes)}};
+    return {{"a.glb", glb(gltf.dump(), bytes)}};
 }
 
 std::vector<Sample> gltf_samples() {

@@ -3,7 +3,6 @@
 #include "loaders/obj.h"
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
 #include "loaders/load.h"
@@ -143,6 +142,7 @@ TEST(ObjText, WhatHasNoEffectIsNoted) {
     EXPECT_MENTIONS(first("s 1"), "1 smoothing group ignored");
     EXPECT_MENTIONS(first("s off"), "s off");
     EXPECT_MENTIONS(first("vertices follow"), "\"vertices\"");
+    EXPECT_MENTIONS(first("{a|b}{}}{ 1"), "(such as \"{a|b}{}}{\") ignored");
     EXPECT_MENTIONS(first("usemtl gone"), "\"gone\"");
     EXPECT_MENTIONS(first("vt nan 0\nf 1/1 2/1 3/1"), "finite");
     EXPECT_MENTIONS(first("v 9 9 9\nv 8 8 8"), "vertices that no polygon uses");

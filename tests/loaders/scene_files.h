@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -93,6 +93,28 @@ inline json& primitive(json& gltf) {
     return gltf["meshes"][0]["primitives"][0];
 }
 
+/// The square with a texture of the base colour, which comes from image 0.
+inline json textured(const std::string& uri) {
+    json gltf = square();
+    gltf["images"] = {{{"uri", uri}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
+    primitive(gltf)["material"] = 0;
+    primitive(gltf)["attributes"]["TEXCOORD_0"] =
+        add_accessor(gltf, pack<float>({0, 0, 1, 0, 1, 1, 0, 1}), 5126, "VEC2", 4);
+    return gltf;
+}
+
+/// Binary glTF of a JSON text and, unless it is empty, a chunk of bytes.
+inline std::string glb(const std::string& text, const std::string& binary) {
+    const auto chunk = [](std::string bytes, uint32_t type, char filler) {
+        bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+        return pack<uint32_t>({static_cast<uint32_t>(bytes.size()), type}) + bytes;
+    };
+    const std::string body = chunk(text, 0x4E4F534A, ' ') + (binary.empty() ? "" : chunk(binary, 0x004E4942, '\0'));
+    return "glTF" + pack<uint32_t>({2, static_cast<uint32_t>(body.size() + 12)}) + body;
+}
+
 inline Scene load(const TempFolder& folder, const json& gltf) {
     return load_scene(folder.write("scene.gltf", gltf.dump()));
 }
@@ -102,21 +124,32 @@ inline const Primitive& only_primitive(const Scene& scene) {
 }
 
 /// The error's line; a test failure where nothing is thrown or the message is no single line.
-inline std::string error_of(const std::string& file) {
+template <typename Work>
+std::string error_from(Work&& work) {
     try {
-        load_scene(file);
+        work();
     } catch (const Error& error) {
         const std::string line = error.what();
         EXPECT_FALSE(line.empty());
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
         return line;
     }
-    ADD_FAILURE() << file << " loaded, an error was expected";
+    ADD_FAILURE() << "no error";
     return "";
+}
+
+inline std::string error_of(const std::string& file) {
+    SCOPED_TRACE(file);
+    return error_from([&] { load_scene(file); });
 }
 
 inline std::string error_of(const TempFolder& folder, const json& gltf) {
     return error_of(folder.write("scene.gltf", gltf.dump()));
+}
+
+inline bool has_note(const Scene& scene, const std::string& words) {
+    return std::any_of(scene.notes.begin(), scene.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
 /// All notes of a scene, one a line.
@@ -124,6 +157,11 @@ inline std::string all_notes(const Scene& scene) {
     std::string out;
     for (const std::string& note : scene.notes) out += note + "\n";
     return out;
+}
+
+inline void expect_near(const glm::vec3& a, const glm::vec3& b) {
+    EXPECT_LT(glm::distance(a, b), 1e-5f)
+        << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
 }
 
 #define EXPECT_MENTIONS(line, word) EXPECT_NE((line).find(word), std::string::npos) << (line)

@@ -2,7 +2,6 @@
 // crash.
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>

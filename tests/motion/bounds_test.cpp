@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "motion/animation.h"
 #include "scene/picture.h"

@@ -114,9 +114,7 @@ TEST_F(PathTracerTest, ImpossibleSettingsNameTheOption) {
 
 TEST_F(PathTracerTest, ExposureAndToneCurveApplyToTheEncodedPictureOnly) {
     Stage stage;
-    Material light = lambert({0, 0, 0});
-    light.emissive = glm::vec3(0.25f);
-    stage.add(ground(3), light);
+    stage.add(ground(3), emitting(glm::vec3(0.25f)));
     RenderSettings settings = settings_for(from_above(2), 8);
     settings.tonemap = Tonemap::none;
     settings.exposure = 1;
@@ -128,9 +126,7 @@ TEST_F(PathTracerTest, ExposureAndToneCurveApplyToTheEncodedPictureOnly) {
 TEST_F(PathTracerTest, UnlitColoursComeOutAsTheyAre) {
     Stage stage;
     stage.add(parallelogram({-4, 0, 4}, {4, 0, 0}, {0, 0, -8}), unlit({0.5f, 0.25f, 0}));
-    Material light = lambert({0, 0, 0});
-    light.emissive = glm::vec3(3);
-    stage.add(parallelogram({0, 0, 4}, {4, 0, 0}, {0, 0, -8}), light);
+    stage.add(parallelogram({0, 0, 4}, {4, 0, 0}, {0, 0, -8}), emitting(glm::vec3(3)));
     RenderSettings settings = settings_for(from_above(2), 9);
     settings.exposure = -1;
     settings.spp = 8;

@@ -21,9 +21,7 @@ Environment direction_image() {
 
 /// A room seen from inside, whose light at p is light(p).
 Primitive room(float half, const std::function<glm::vec3(glm::vec3)>& light) {
-    Primitive walls = box(glm::vec3(-half), glm::vec3(half));
-    for (auto& n : walls.normals) n = -n;
-    for (auto& t : walls.triangles) std::swap(t.y, t.z);
+    Primitive walls = inside_out(box(glm::vec3(-half), glm::vec3(half)));
     for (const glm::vec3& p : walls.positions) walls.colors.push_back(glm::vec4(light(p), 1));
     return walls;
 }
@@ -121,19 +119,19 @@ TEST_F(CubemapTracerTest, RoughLevelsKeepUniformLight) {
         RenderSettings settings = settings_for(perspective({0.3f, 0.5f, 2}, {0, 0, 0}, 24), 48);
         settings.tracer = Tracer::none;
         const RenderResult want = render(alone, white, settings);
-        // However many samples: a lookup is of the whole lobe.
+        // However many samples: a lookup is of the whole lobe. Of several, `want` shows the middle alone, and at the
+        // rim reflectance changes within a pixel.
         for (uint32_t spp : {1u, 4u}) {
             settings.spp = spp;
             if (spp == 1 && roughness > 0.5f) continue;  // nothing would be traced, so there is no probe
-            const RenderResult got = cubemap(stage, black, settings);
+            const RenderResult got = cubemap(stage, black, settings), ball = render(alone, black, settings);
             EXPECT_EQ(got.stats.maps.probes, 1u);
             Tally result;
             for (size_t i = 0; i < want.radiance.size(); i++)
-                if (want.radiance[i].w == 1 && got.radiance[i].w == 1)
-                    result.add(near(glm::dvec3(got.radiance[i]), glm::dvec3(want.radiance[i]), spp == 1 ? 2e-3 : 0.02),
+                if (ball.radiance[i].w == 1)  // all samples: in the room, coverage does not tell what they see
+                    result.add(near(glm::dvec3(got.radiance[i]), glm::dvec3(want.radiance[i]), spp == 1 ? 2e-3 : 0.03),
                                [&] { return text(glm::dvec3(got.radiance[i])) + text(glm::dvec3(want.radiance[i])); });
-            // Of several samples at the rim some see the room.
-            result.expect(spp == 1 ? 0 : 0.02, 1000);
+            result.expect(0, 1000);
         }
     }
 }

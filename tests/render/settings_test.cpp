@@ -28,12 +28,6 @@ const std::vector<glm::vec3> kRow = {
     {0, 0, 0},           {0.001f, 0.002f, 0.003f}, {0.02f, 0.05f, 0.1f}, {0.2159f, 0.5f, 1}, {0.18f, 0.18f, 0.18f},
     {0.8f, 0.1f, 0.01f}, {2, 0.5f, 0.1f},          {30, 20, 10}};
 
-Material emitting(const glm::vec3& light) {
-    Material m = lambert({0, 0, 0});
-    m.emissive = light;
-    return m;
-}
-
 class EncodingTest : public PictureTest {
   protected:
     RenderResult row(float exposure, Tonemap tonemap, Material (*material)(const glm::vec3&)) {

@@ -51,7 +51,7 @@ TEST(SplitSum, NothingReflectsMoreThanItGets) {
 }
 
 TEST(SplitSum, FittedReflectanceHasTheMeansOfTheExactOne) {
-    for (double ior : {1.0001, 1.1, 1.33, 1.5, 1.8, 2.4, 4.0}) {
+    for (double ior : {1.0001, 1.01, 1.1, 1.33, 1.5, 1.8, 2.4, 4.0}) {
         const glm::vec4 fit = fresnel_fit(ior);
         for (double roughness : {0.1, 0.3, 0.6, 1.0})
             for (double cosine : {0.05, 0.2, 0.5, 0.9}) {
@@ -59,7 +59,10 @@ TEST(SplitSum, FittedReflectanceHasTheMeansOfTheExactOne) {
                 for (int k = 0; k < 4; k++)
                     got +=
                         fit[k] * ggx_mean(cosine, roughness, [&](double c) { return std::pow(1 - c, kExponents[k]); });
-                EXPECT_NEAR(got, ggx_mean(cosine, roughness, [&](double c) { return fresnel(c, 1, ior); }), 4e-3)
+                EXPECT_NEAR(got, ggx_mean(cosine, roughness, [&](double c) { return fresnel(c, 1, ior); }),
+                            ior < 1.1 ? 0.045  // no four powers follow a reflection that rises from nothing at the rim
+                            : ior > 2.4 ? 5e-3
+                                        : 1e-3)
                     << "index " << ior << ", roughness " << roughness << ", cosine " << cosine;
             }
     }

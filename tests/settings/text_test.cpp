@@ -63,5 +63,12 @@ TEST(Text, CountsChooseTheirWords) {
     EXPECT_EQ(counted("{{a|b}} of {} {x} {", 1), "{a|b} of 1 {x} {");
 }
 
+TEST(Text, NamesOutOfFilesAreNoPlacesToFill) {
+    for (const std::string name : {"{}", "{a|b}", "a}}{", "%d {{x}}"})
+        EXPECT_EQ(counted("{} node{|s} of " + escaped(name), 2), "2 nodes of " + name);
+    EXPECT_EQ(counted(escaped("a\n{b}"), 1), "a {b}");
+    EXPECT_EQ(counted(escaped("{|}{|}", 4), 1), "{|}{...");
+}
+
 }  // namespace
 }  // namespace peelray

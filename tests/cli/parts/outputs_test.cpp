@@ -22,6 +22,11 @@ TEST_F(Outputs, EachIsWrittenOnce) {
     EXPECT_NO_THROW(check_outputs({folder / "a", folder / "b"}, {folder / "c"}));
     expect_error([&] { check_outputs({folder / "a", folder / "b", folder / "a"}, {}); }, "would be written twice");
     expect_error([&] { check_outputs({folder / "a", folder / "." / "a"}, {}); }, "would be written twice");
+    expect_error(
+        [&] {
+            check_outputs({"not there", std::filesystem::current_path() / "not there"}, {});
+        },
+        "would be written twice");
     fs::create_directory(folder / "in");
     expect_error([&] { check_outputs({folder / "a", folder / "in" / ".." / "a"}, {}); }, "would be written twice");
     put("a", "");
