@@ -37,6 +37,7 @@ bool alphaPresent(uint triangle, vec2 weights) {
 /// May light pass through the triangle somewhere?
 bool mayTransmit(uint triangle) {
     const uint index = triangle_materials[triangle];
+    if ((materials[index].flags & MATERIAL_BLENDED) != 0u) return true;
     return materials[index].transmission > 0.0 && (materials[index].metallic < 1.0 || materials[index].textures[TEXTURE_METALLIC] >= 0);
 }
 
@@ -47,7 +48,7 @@ bool mayTransmit(uint triangle) {
 // colour a material is read again wherever it is needed rather than kept.
 layout(constant_id = 20) const uint material_kinds = 0u;
 const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u,
-           filtered = (material_kinds & MATERIALS_FILTERED) != 0u;
+           filtered = (material_kinds & MATERIALS_FILTERED) != 0u, blended = (material_kinds & MATERIALS_BLENDED) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {
@@ -84,13 +85,15 @@ float textureNumber(uint material, int use, TexturePlace place, inout LastTextur
     return last.value[materials[material].channels >> uint(2 * use) & 3u];
 }
 
-/// With the vertices' own colours.
-vec3 baseColor(uint material, TexturePlace place) {
-    vec3 color = materials[material].base_color;
+/// With the vertices' own colours; the fourth: alpha of what is blended, else 1.
+vec4 baseColor(uint material, TexturePlace place) {
+    vec4 color = vec4(materials[material].base_color, materials[material].alpha);
     if ((materials[material].flags & MATERIAL_COLORED) != 0u)
-        color *= colors[place.corners.x].rgb * place.weights.x + colors[place.corners.y].rgb * place.weights.y + colors[place.corners.z].rgb * place.weights.z;
+        color *= colors[place.corners.x] * place.weights.x + colors[place.corners.y] * place.weights.y + colors[place.corners.z] * place.weights.z;
     const int index = materials[material].textures[TEXTURE_BASE_COLOR];
-    return index >= 0 ? color * textureAt(index, place).rgb : color;
+    if (index >= 0) color *= textureAt(index, place);
+    if (!blended || (materials[material].flags & MATERIAL_BLENDED) == 0u) color.a = 1.0;
+    return color;
 }
 
 /// All textures of a material but the base colour's and the normal's.

@@ -49,7 +49,9 @@ SHARED_SIZE(GpuMaterial, 152);
 #define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
 #define MATERIAL_SCHLICK 16u      // reflectance between f0 and f90; else by the index of refraction
 #define MATERIAL_TEXTURED 32u     // by more than a base colour and a normal
+#define MATERIAL_BLENDED 64u      // covers what is behind it by its alpha only
 /// Of all materials of a scene:
+#define MATERIALS_BLENDED 8u  // some are MATERIAL_BLENDED
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
 #define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
 #define MATERIALS_FILTERED 4u   // some have textures whose filter depends on how large they are seen

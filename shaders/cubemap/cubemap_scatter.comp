@@ -29,7 +29,7 @@ GpuObject object;  // of this thread's hit
 bool samplesMicrofacets() { return false; }
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) { return s.normal; }
 float tracedPart(Material m) { return 1.0; }
-void decide(inout Branch branch, vec3 path_weight, uint effect) {
+void decide(inout Branch branch, RayState state, uint effect, bool passes) {
     branch.traced = (frame[0].effects & effect) != 0u && object.probe != NO_PROBE;
 }
 

@@ -51,5 +51,5 @@ void main() {
         const vec3 light = lampLight(k, s, m, view, direction);
         if (light != vec3(0)) sum += light * lampShare(k, s, SurfaceId(hit.instance, hit.triangle), direction);
     }
-    nodes[i].radiance += sum;
+    nodes[i].radiance += s.alpha * sum;
 }

@@ -25,14 +25,29 @@ bool samplesMicrofacets();
 vec3 microfacet(Surface s, vec3 view, float alpha, uint seed);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
 float tracedPart(Material m);
-/// Sets `traced`.
-void decide(inout Branch branch, vec3 path_weight, uint effect);
+/// Sets `traced`; `passes`: the ray goes on through a blended surface.
+void decide(inout Branch branch, RayState state, uint effect, bool passes);
+
+/// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin glass sends its
+/// light the same way.
+void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 radiance, inout Branch reflection, inout Branch refraction) {
+    radiance *= s.alpha;
+    reflection.weight *= s.alpha;
+    const uint passed = (state.medium & RAY_PASSES) == RAY_PASSES ? state.medium : state.medium + RAY_PASSED;
+    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, filtered ? packCone(cone) : 0u);
+    decide(refraction, state, EFFECT_REFRACTION, true);
+}
 
 /// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
 vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const Material m = materialOf(s);
-    if ((m.flags & MATERIAL_UNLIT) != 0u) return s.base_color;
+    vec3 radiance = m.emissive;
+    if ((m.flags & MATERIAL_UNLIT) != 0u) {
+        radiance = s.base_color;
+        if (blended && s.alpha < 1.0) passBeside(s, incoming, state, cone, radiance, reflection, refraction);
+        return radiance;
+    }
     const vec3 view = -incoming;
     const bool thin = (m.flags & MATERIAL_THIN) != 0u;
     const bool transparent = transmits(m);
@@ -61,9 +76,8 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     }
     reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0,
                         filtered ? packCone(coneReflected(cone, s.curvature)) : 0u);
-    decide(reflection, state.weight, EFFECT_REFLECTION);
+    decide(reflection, state, EFFECT_REFLECTION, false);
 
-    vec3 radiance = m.emissive;
     const float part = transparent ? 1.0 : tracedPart(m);
     if (part < 1.0) {  // the untraced part of a wide lobe, at once
         radiance += reflection.weight * (1.0 - part) * environmentRadiance(reflection.direction, m.roughness);
@@ -81,12 +95,13 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
             passes = refractRay(incoming, h, face.eta, direction);
         if (passes) {
             const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
-            const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE);
+            const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & RAY_PASSES);
             const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
             refraction = Branch(through, direction, inside | sun, false, 0.0, filtered ? packCone(beyond) : 0u);
-            decide(refraction, state.weight, EFFECT_REFRACTION);
+            decide(refraction, state, EFFECT_REFRACTION, false);
         }
     }
+    if (blended && s.alpha < 1.0) passBeside(s, incoming, state, cone, radiance, reflection, refraction);
     return radiance;
 }
 

@@ -19,6 +19,7 @@ struct Surface {
     vec3 normal;       ///< interpolated and bent by the normal texture, unit, on the ray's side
     vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
     vec3 base_color;
+    float alpha;       ///< share of the surface that is there; the rest of the light goes straight on
     float error;       ///< bound on the position's rounding error, world units
     float offset;      ///< height above it from which secondary rays count, world units (planar hits)
     bool front;        ///< the ray comes from the side that the normals point to
@@ -118,7 +119,9 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
     if (bendsNormals(s.material)) bent = bentNormal(s.material, place, linear, turned, interpolated, normal);
     s.normal = visibleNormal(bent * side, s.geometric, -direction);
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
-    s.base_color = baseColor(s.material, place);
+    const vec4 color = baseColor(s.material, place);
+    s.base_color = color.rgb;
+    s.alpha = color.a;
     s.factors = textureFactors(s.material, place);
     return s;
 }
@@ -170,7 +173,7 @@ vec3 environmentIrradiance(vec3 n) {
 
 /// Light left after a ray of this RayState::medium went the distance `t` (Beer and Lambert).
 vec3 transmittance(uint medium, float t) {
-    medium &= ~RAY_SEES_SUN;
+    medium &= RAY_MEDIUM;
     return medium == MEDIUM_NONE ? vec3(1) : exp(-materialAbsorption(medium) * t);
 }
 

@@ -45,7 +45,8 @@ struct Frame {
     float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of
                            ///< exact hits)
     uint spp;
-    uint last_level;    ///< level whose hits spawn no more rays
+    uint bounces;       ///< reflections and refractions in a row
+    uint last_level;    ///< level whose hits spawn no more rays: bounces, and as many blended surfaces as are passed
     float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
@@ -53,7 +54,7 @@ struct Frame {
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 316);
+SHARED_SIZE(Frame, 320);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -146,7 +146,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
         if (hit.triangle != PEELRAY_MISS) {
             const Surface beside = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction, 0.0);
             const bool parallel = abs(dot(beside.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
-            if (!wall && parallel && !transmits(materialOf(beside))) {
+            if (!wall && parallel && !mayTransmit(hit.triangle)) {
                 m.hit = hit;
                 m.wall = false;
                 return m;

@@ -11,12 +11,15 @@ namespace peelray {
 /// What a ray carries beside its geometry.
 struct RayState {
     vec3 weight;  ///< share of the pixel's light that comes along this ray
-    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_SEES_SUN
+    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_PASSED for each surface | RAY_SEES_SUN
     uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
     uint cone;    ///< at the ray's start (cone.glsl)
 };
 SHARED_SIZE(RayState, 24);
-#define MEDIUM_NONE 0x7fffffffu
+#define MEDIUM_NONE 0x03ffffffu
+#define RAY_MEDIUM 0x03ffffffu
+#define RAY_PASSED 0x04000000u  // a blended surface; that is no bounce
+#define RAY_PASSES 0x7c000000u
 #define RAY_SEES_SUN 0x80000000u
 
 /// One hit of the tree of rays below a pixel: its radiance is its own, what arrives along its shadow rays and that of

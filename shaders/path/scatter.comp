@@ -69,15 +69,20 @@ float tracedPart(Material m) {
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, m.roughness);
 }
 
-void decide(inout Branch branch, vec3 path_weight, uint effect) {
-    branch.traced = (frame[0].effects & effect) != 0u && params.level < frame[0].last_level &&
-                    largest(branch.weight * path_weight) >= LEAST_WEIGHT;
+/// Has the ray come as far as it is followed? Without blended surfaces its level is its bounces.
+bool isLast(uint medium, bool passes) {
+    if (!blended || passes) return params.level >= frame[0].last_level;
+    return params.level >= min(frame[0].last_level, frame[0].bounces + (medium & RAY_PASSES) / RAY_PASSED);
 }
 
-/// Would it be traced if this level were not the last? With --bounces 0 nobody asked for it.
-bool isCut(Branch branch, vec3 path_weight, uint effect) {
-    return params.level > 0u && params.level == frame[0].last_level && (frame[0].effects & effect) != 0u &&
-           largest(branch.weight * path_weight) >= LEAST_WEIGHT;
+void decide(inout Branch branch, RayState state, uint effect, bool passes) {
+    branch.traced = (frame[0].effects & effect) != 0u && !isLast(state.medium, passes) && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
+}
+
+/// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
+bool isCut(Branch branch, RayState state, uint effect, bool passes) {
+    return params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & effect) != 0u &&
+           largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 
 void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
@@ -249,10 +254,10 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if ((m.flags & MATERIAL_UNLIT) != 0u)
         c.node.flags |= NODE_UNLIT;
     else
-        c.node.radiance += unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
-    if (isCut(c.reflection, c.path_weight, EFFECT_REFLECTION)) atomicAdd(group_cut[0], 1u);
-    if (isCut(c.refraction, c.path_weight, EFFECT_REFRACTION)) atomicAdd(group_cut[1], 1u);
+    if (isCut(c.reflection, state, EFFECT_REFLECTION, false)) atomicAdd(group_cut[0], 1u);
+    if (isCut(c.refraction, state, EFFECT_REFRACTION, c.surface.alpha < 1.0)) atomicAdd(group_cut[1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
@@ -304,7 +309,7 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.lost, c.before, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.before, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

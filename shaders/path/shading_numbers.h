@@ -56,6 +56,9 @@
 // An alpha this little below the cutoff counts as reaching it: rounding makes no holes where both are equal.
 #define ALPHA_ROUNDING 1e-6
 
+// Blended surfaces that a path goes straight through before they count as bounces.
+#define BLENDED_PASSED 8
+
 // What random numbers are for.
 #define RANDOM_MICROFACET 1
 #define RANDOM_SKY 2

@@ -35,7 +35,8 @@ std::string describe(const Material& m) {
     for (size_t i = 0; i < material_textures.size(); i++)
         if (const MaterialTexture& used = m.*material_textures[i])
             text += fmt::format(", {}texture {}", uses[i], used.texture);
-    if (m.alpha_cutoff > 0) text += fmt::format(", holes where alpha is below {:.3g}", m.alpha_cutoff);
+    if (m.blended) text += fmt::format(", blended by its alpha of {:.3g}", m.alpha);
+    if (m.alpha_cutoff > 0 && !m.blended) text += fmt::format(", holes where alpha is below {:.3g}", m.alpha_cutoff);
     if (m.emissive != glm::vec3(0))
         text += fmt::format(", emits {:.3g} {:.3g} {:.3g}", m.emissive.x, m.emissive.y, m.emissive.z);
     if (m.transmission > 0)

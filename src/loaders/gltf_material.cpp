@@ -134,7 +134,24 @@ class MaterialReader {
         if (from_.alphaCutoff < 0)
             fail("{}: alphaCutoff {} must not be below 0", loader_.file.where("materials", index_), from_.alphaCutoff);
         if (mode == "MASK") material_.alpha_cutoff = static_cast<float>(from_.alphaCutoff);
-        if (mode == "BLEND") ++loader_.ignored["{} material{|s} with alphaMode BLEND drawn opaque"];
+        if (mode == "BLEND") read_blending();
+    }
+
+    /// Coverage, but where nothing in the file says less than 1. Texels of which nothing is there are holes: rays need
+    /// not stop at them.
+    void read_blending() {
+        const MaterialTexture& texture = material_.base_color_texture;
+        const double least =
+            texture ? least_value(loader_.scene.textures[static_cast<size_t>(texture.texture)], 3) : 1.0;
+        const auto has_colors = [](const tinygltf::Mesh& mesh) {
+            return std::ranges::any_of(mesh.primitives, [](const auto& p) { return p.attributes.contains("COLOR_0"); });
+        };
+        material_.blended = material_.alpha * least < 1 || std::ranges::any_of(model_.meshes, has_colors);
+        if (material_.transmission > 0 && material_.thickness > 0 && material_.blended) {
+            material_.blended = false;
+            ++loader_.ignored["alphaMode BLEND of {} material{|s} that {bounds|bound} a refracting volume ignored"];
+        }
+        if (material_.blended && least * 255 < 0.5) material_.alpha_cutoff = 0.5f / 255;
     }
 
     void read_emission() {

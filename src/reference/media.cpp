@@ -67,7 +67,7 @@ MediaWalk::Together MediaWalk::walls_at(const OracleRay& ray, const Wall& neares
         const uint32_t material = wall.surface.material;
         if (std::abs(glm::dot(wall.surface.geometric, nearest.surface.geometric)) < WALLS_PARALLEL) break;
         if (!bounds_medium(hit.triangle)) {
-            if (!wall.surface.optics.transmits()) together.opaque = hit;
+            if (!surfaces_.lets_through(material)) together.opaque = hit;
             break;
         }
         const auto same = [&](bool front) {

@@ -78,6 +78,7 @@ struct PathTracer::Impl {
     Surroundings surroundings;
     std::vector<Light> lights;
     MediaRanks media;
+    bool has_blended;
     const Scene& scene;
     Moment placed;  ///< only what MediaPieces reads
 
@@ -89,6 +90,8 @@ struct PathTracer::Impl {
           surroundings(environment),
           lights(moment.lights),
           media(media_ranks(scene)),
+          has_blended(std::ranges::any_of(geometry.materials,
+                                          [&](uint32_t material) { return scene.materials[material].blended; })),
           scene(scene) {
         placed.worlds = moment.worlds;
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
@@ -144,7 +147,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
-        if (usable && hit.hit() && surfaces.optics_of_triangle(hit.triangle).unlit) unlit += radiance;
+        if (usable) unlit += shader.unlit();
         if (s.aovs && sample == 0 && hit.hit())
             aovs(picture, at, path, bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit,
                  context.box);
@@ -196,7 +199,8 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->media,
                                 settings,
                                 box,
-                                impl_->media_around(settings.camera)};
+                                impl_->media_around(settings.camera),
+                                impl_->has_blended};
     Picture picture;
     prepare(picture, settings);
     Tiles tiles(settings);

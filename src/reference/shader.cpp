@@ -103,6 +103,11 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     path.cone.width = width;  // at the hit
     const Scattered scattered = scatter(surface, path, meeting);
     glm::dvec3 sum = scattered.radiance;
+    if (path.level == 0 && surface.optics.unlit) {
+        const Branch& on = scattered.refraction;
+        unlit_ =
+            kept * (sum + (on.traced ? glm::dvec3(0) : on.weight * context_.surroundings.radiance(on.direction, 0)));
+    }
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
     if (scattered.reflection.traced) rays_.reflection++;
@@ -111,7 +116,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     rays_.cut_refraction += is_cut(scattered.refraction, path, context_.settings.refraction);
     sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
     sum += follow(scattered.refraction, surface, path, hit.triangle, 1);
-    sum += direct_light(surface, hit.triangle, path);
+    sum += surface.optics.alpha * direct_light(surface, hit.triangle, path);
     return kept * sum;
 }
 
@@ -130,17 +135,23 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.sees_sun = branch.sees_sun;
     next.seed = hash3({path.seed, which, path.level}).x;
     next.level = path.level + 1;
+    next.passed = path.passed + branch.passes;
     return branch.weight * radiance(next, hit(next));
 }
 
-bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
-    return effect && path.level < context_.settings.bounces && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+/// Has the path come as far as it is followed?
+bool Shader::is_last(const Branch& branch, const Path& path) const {
+    const uint32_t last = last_level(context_.settings, context_.has_blended);
+    return path.level >= (branch.passes ? last : std::min(last, context_.settings.bounces + path.passed));
 }
 
-/// Would it be traced if this level were not the last? With no bounces at all nobody asked for it.
+bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
+    return effect && !is_last(branch, path) && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+}
+
+/// Would it be traced if it were not too far along the path? With no bounces at all nobody asked for it.
 bool Shader::is_cut(const Branch& branch, const Path& path, bool effect) const {
-    return effect && path.level > 0 && path.level == context_.settings.bounces &&
-           largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+    return effect && path.level > 0 && is_last(branch, path) && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
 }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
@@ -159,6 +170,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     Scattered out;
     if (m.unlit) {
         out.radiance = s.base_color;
+        if (m.alpha < 1) pass_beside(s, path, meeting, out);
         return out;
     }
     const glm::dvec3 view = -path.direction;
@@ -196,10 +208,9 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         reflection.weight *= part;
         reflection.traced = reflection.traced && part > 0;
     }
-    if (!transmits) return out;
-
-    const auto direction =
-        m.thin ? std::optional(path.direction) : refract_ray(path.direction, h, relative_index(meeting, s));
+    const auto direction = !transmits ? std::nullopt
+                           : m.thin   ? std::optional(path.direction)
+                                      : refract_ray(path.direction, h, relative_index(meeting, s));
     if (direction) {
         Branch& refraction = out.refraction;
         refraction.weight = (1.0 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
@@ -211,7 +222,25 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         refraction.traced = is_traced(refraction, path, settings.refraction);
         refraction.weight *= meeting.beside;
     }
+    if (m.alpha < 1) pass_beside(s, path, meeting, out);
     return out;
+}
+
+/// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin
+/// glass sends its light the same way.
+void Shader::pass_beside(const Surface& s, const Path& path, const Meeting& meeting, Scattered& out) const {
+    const double alpha = s.optics.alpha;
+    out.radiance *= alpha;
+    out.reflection.weight *= alpha;
+    Branch on;
+    on.weight = alpha * out.refraction.weight + (1 - alpha);
+    on.direction = path.direction;
+    on.media = meeting.behind;
+    on.cone = path.cone;
+    on.passes = true;
+    on.sees_sun = path.sees_sun;
+    on.traced = is_traced(on, path, context_.settings.refraction);
+    out.refraction = on;
 }
 
 /// Light from the lamps, the sun and the diffuse sky (docs/frame.md section 5).
@@ -273,10 +302,11 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
         if (!hit.hit()) return share;
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
         const Optics& m = s.optics;
-        if (!m.transmits()) return glm::dvec3(0);
+        if (!m.transmits() && m.alpha == 1) return glm::dvec3(0);
         const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        share *= (1.0 - reflectance_at(meeting, s, cosine)) * (1 - m.metallic) * m.transmission * s.base_color *
-                 meeting.beside;
+        const glm::dvec3 tint =
+            (1.0 - reflectance_at(meeting, s, cosine)) * (1 - m.metallic) * m.transmission * s.base_color;
+        share *= glm::mix(glm::dvec3(1), tint, m.alpha) * meeting.beside;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         share *= transmittance(meeting.wall ? meeting.from : meeting.before.counting(context_.media), hit.t - from);
         if (largest(share) < LEAST_WEIGHT) return glm::dvec3(0);

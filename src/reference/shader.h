@@ -22,6 +22,7 @@ struct RenderContext {
     const PictureSettings& settings;
     Box box;      ///< of the scene
     Media start;  ///< what the camera is in
+    bool has_blended;
 };
 
 /// How wide the light is that a ray stands for (Akenine-Möller et al., JCGT 2021).
@@ -45,6 +46,7 @@ class Shader {
         bool sees_sun = true;
         uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
         uint32_t level = 0;
+        uint32_t passed = 0;  ///< blended surfaces so far: those levels are no bounces
     };
 
     Shader(const RenderContext& context, uint32_t sample) : context_(context), sample_(sample) {}
@@ -55,6 +57,8 @@ class Shader {
     glm::dvec3 radiance(const Path& path, const Meeting& meeting);
     /// The rays traced so far, camera rays excepted.
     const RayCounts& rays() const { return rays_; }
+    /// What of the camera ray's light an unlit surface sends.
+    const glm::dvec3& unlit() const { return unlit_; }
 
   private:
     struct Branch {
@@ -62,6 +66,7 @@ class Shader {
         glm::dvec3 direction{0, 0, 1};
         Media media;
         Cone cone;
+        bool passes = false;  ///< straight on, through a blended surface
         bool sees_sun = false;
         bool traced = false;
         double blur = 0;  ///< roughness for the environment, if not traced
@@ -74,6 +79,8 @@ class Shader {
     MediaWalk walk() const { return {context_.bvh, context_.surfaces, context_.media}; }
     Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
     glm::dvec3 half_vector(const Surface& surface, const glm::dvec3& view, double alpha, uint32_t seed) const;
+    void pass_beside(const Surface& surface, const Path& path, const Meeting& meeting, Scattered& scattered) const;
+    bool is_last(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path, bool effect) const;
     bool is_cut(const Branch& branch, const Path& path, bool effect) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
@@ -92,6 +99,7 @@ class Shader {
     const RenderContext& context_;
     uint32_t sample_;
     RayCounts rays_;
+    glm::dvec3 unlit_{0};
 };
 
 }  // namespace peelray

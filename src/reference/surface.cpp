@@ -135,8 +135,8 @@ auto Surfaces::filtered(const MaterialTexture& use, const Place& place, bool is_
     return choice.part > 0 ? glm::mix(level(choice.first), level(choice.second), choice.part) : level(choice.first);
 }
 
-glm::dvec4 Surfaces::data(const MaterialTexture& use, const Place& place) const {
-    return filtered(use, place, true, sample_data);
+glm::dvec4 Surfaces::data(const MaterialTexture& use, const Place& place, bool is_data) const {
+    return filtered(use, place, is_data, sample_data);
 }
 
 double Surfaces::number(const MaterialTexture& use, const Place& place) const {
@@ -152,6 +152,11 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
     Optics o = optics_[material];
     if (!geometry_.colors.empty()) o.base_color *= glm::dvec3(place.interpolate(geometry_.colors));
     o.base_color *= color(m.base_color_texture, place);
+    if (m.blended) {
+        o.alpha = double(m.alpha);
+        if (!geometry_.colors.empty()) o.alpha *= place.interpolate(geometry_.colors).w;
+        if (m.base_color_texture) o.alpha *= data(m.base_color_texture, place, false).w;
+    }
     o.emissive *= color(m.emissive_texture, place);
     o.metallic *= number(m.metallic_texture, place);
     o.roughness *= number(m.roughness_texture, place);

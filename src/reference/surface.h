@@ -8,6 +8,7 @@
 
 #include "scene/environment.h"
 #include "scene/mipmaps.h"
+#include "scene/picture.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -22,6 +23,7 @@ struct Optics {
     glm::dvec3 f0{0};
     double f90 = 1;
     double occlusion = 1;  ///< share of the sky's diffuse light that arrives
+    double alpha = 1;      ///< share of the surface that is there
     bool thin = true, unlit = false;
 
     Optics() = default;
@@ -69,6 +71,7 @@ class Surfaces {
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
     /// A material's constants, without its textures.
     const Optics& optics(uint32_t material) const { return optics_[material]; }
+    bool lets_through(uint32_t material) const { return peelray::lets_through(scene_.materials[material]); }
     uint32_t material_of_triangle(uint32_t triangle) const { return geometry_.materials[triangle]; }
     const Optics& optics_of_triangle(uint32_t triangle) const { return optics_[geometry_.materials[triangle]]; }
 
@@ -88,7 +91,8 @@ class Surfaces {
     /// What a use's texture shows there, filtered; sample(level, coordinates, nearest).
     template <typename Sample>
     auto filtered(const MaterialTexture& use, const Place& place, bool is_data, Sample sample) const;
-    glm::dvec4 data(const MaterialTexture& use, const Place& place) const;
+    /// All channels as they are stored, of the levels of data or of colours.
+    glm::dvec4 data(const MaterialTexture& use, const Place& place, bool is_data = true) const;
     /// The single number that a use reads, 1 where there is no texture.
     double number(const MaterialTexture& use, const Place& place) const;
     glm::dvec3 color(const MaterialTexture& use, const Place& place) const;

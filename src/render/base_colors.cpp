@@ -43,7 +43,8 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.normal_scale = material.normal_scale;
     m.occlusion_strength = material.occlusion_strength;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
-              (colored ? MATERIAL_COLORED : 0u) | (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
+              (colored ? MATERIAL_COLORED : 0u) | (material.blended ? MATERIAL_BLENDED : 0u) |
+              (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
     set_reflectance(m, material);
     m.thickness = material.thickness;
     m.alpha = material.alpha;
@@ -192,6 +193,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
         }
         if (used[i] && m.flags & MATERIAL_SCHLICK) out.kinds |= MATERIALS_SPECIFIED;
+        if (used[i] && material.blended) out.kinds |= MATERIALS_BLENDED;
         materials.push_back(m);
     }
     if (std::ranges::any_of(textures.table, is_filtered)) out.kinds |= MATERIALS_FILTERED;

@@ -91,7 +91,8 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     std::vector<bool> used(scene.materials.size(), false);
     for (uint32_t material : assembly.materials) used[material] = true;
     for (size_t i = 0; i < used.size(); i++) {
-        has_glass |= used[i] && transmits(scene.materials[i]);
+        has_glass |= used[i] && lets_through(scene.materials[i]);
+        has_blended |= used[i] && scene.materials[i].blended;
         has_unlit |= used[i] && scene.materials[i].unlit;
     }
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));

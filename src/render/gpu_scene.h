@@ -32,6 +32,7 @@ class GpuScene {
     Buffer lights, environment;
     Buffer split_sum;                  ///< the table of path/split_sum.h
     bool has_glass = false;            ///< some triangle lets light through
+    bool has_blended = false;          ///< some covers a part of what is behind it
     bool layered = false;              ///< rays may be in several media at once (MediaPieces), at this moment
     Buffer media_ranks;                ///< uint32: number of materials, rank by material, material by rank
     bool has_unlit = false;            ///< some triangle is to be shown as it is

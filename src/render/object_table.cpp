@@ -21,8 +21,8 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             if (geometry.materials[i] == last) continue;
             last = geometry.materials[i];
             const Material& m = scene.materials[last];
+            s.transmits |= m.unlit ? m.blended : lets_through(m);
             if (m.unlit) continue;
-            s.transmits |= transmits(m);
             s.metallic |= m.metallic > float(MOSTLY_METAL);
             s.smoothest = std::min(s.smoothest, smoothest[last]);
             s.roughest = std::max(s.roughest, m.roughness);

@@ -13,8 +13,8 @@ CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settin
     return choice;
 }
 
-bool needs_rays(const RenderSettings& settings) {
-    return settings.shadow || settings.ambient || settings.counters ||
+bool needs_rays(const RenderSettings& settings, bool has_blended) {
+    return settings.shadow || settings.ambient || settings.counters || (has_blended && settings.refraction) ||
            (settings.bounces > 0 && (settings.reflection || settings.refraction));
 }
 

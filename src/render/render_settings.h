@@ -19,6 +19,6 @@ struct RenderSettings : PictureSettings, TracerChoice {
 CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settings);
 
 /// False: no effect that is on traces a ray, so that nothing need be built to trace any in.
-bool needs_rays(const RenderSettings& settings);
+bool needs_rays(const RenderSettings& settings, bool has_blended);
 
 }  // namespace peelray

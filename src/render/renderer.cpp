@@ -136,7 +136,7 @@ void Renderer::Impl::prepare_tracer() {
     f.settings.cubes = choose_automatically(triangles_of(assembly), f.settings);
     TracerChoice choice = f.settings;
     if (choice.tracer == Tracer::khr) f.device.check_ray_tracing();
-    if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings) && !f.scene.layered &&
+    if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings, f.scene.has_blended) && !f.scene.layered &&
         camera_media() == glm::uvec2(0))
         choice.tracer = Tracer::none;
     if (!f.tracer || made_for != choice) {
@@ -168,7 +168,7 @@ glm::uvec2 Renderer::Impl::camera_media() const {
 /// Bands of the picture, and its constants.
 void Renderer::Impl::prepare_view() {
     const RenderSettings& settings = f.settings;
-    f.last_level = f.tracer->traces() ? settings.bounces : 0;
+    f.last_level = f.tracer->traces() ? last_level(settings, f.scene.has_blended) : 0;
     box = settings.bounds ? *settings.bounds : bounds(source, moment);
     Frame& frame = f.constants = {};
     f.scene.describe(frame);
@@ -188,6 +188,7 @@ void Renderer::Impl::prepare_view() {
     frame.row_pixels = f.bands.row_pixels();
     frame.effects = f.tracer->traces() || f.maps ? effects_of(settings) : 0;
     frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
+    frame.bounces = settings.bounces;
     frame.last_level = f.last_level;
     f.commands.upload(f.view.target.frame, std::span<const Frame>(&frame, 1));
 }

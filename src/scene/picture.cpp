@@ -17,7 +17,9 @@ float least_roughness(const Scene& scene, const Material& m) {
 bool is_reflective(const Scene& scene, uint32_t spp) {
     const auto reflects = [&](const Primitive& primitive) {
         const Material& m = scene.materials[primitive.material];
-        if (primitive.triangles.empty() || m.unlit) return false;
+        if (primitive.triangles.empty()) return false;
+        if (m.blended) return true;
+        if (m.unlit) return false;
         return transmits(m) || is_reflection_traced(least_roughness(scene, m), m.metallic > float(MOSTLY_METAL), spp);
     };
     return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {

@@ -71,9 +71,19 @@ struct Picture {
     RayCounts rays;
 };
 
+/// The last level of the tree of rays: bounces, and the blended surfaces that a path goes straight through.
+inline uint32_t last_level(const PictureSettings& settings, bool has_blended) {
+    return std::min(settings.bounces + (has_blended ? uint32_t(BLENDED_PASSED) : 0), uint32_t(kBounceLimits.most));
+}
+
 /// Does light pass through the material, somewhere at least?
 inline bool transmits(const Material& material) {
     return material.transmission > 0 && (material.metallic < 1 || material.metallic_texture);
+}
+
+/// Does light go on behind the material, refracted or straight, somewhere at least?
+inline bool lets_through(const Material& material) {
+    return transmits(material) || material.blended;
 }
 
 /// The material's roughness where it is smoothest.

@@ -53,7 +53,8 @@ struct MaterialTexture {
 struct Material {
     std::string name;
     glm::vec3 base_color{1};             ///< linear, [0, 1]
-    float alpha = 1;                     ///< base colour alpha, [0, 1]
+    float alpha = 1;                     ///< base colour alpha, [0, 1]; of no effect but with these two:
+    bool blended = false;                ///< alpha is the share of the surface that is there
     float alpha_cutoff = 0;              ///< less alpha than this is a hole (AlphaTest); 0: opaque, whatever the alpha
     MaterialTexture base_color_texture;  ///< sRGB; its alpha times `alpha`
     MaterialTexture emissive_texture;    ///< sRGB

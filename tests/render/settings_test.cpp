@@ -210,19 +210,19 @@ TEST_F(SettingsTest, WhatFindsNoRoomBecomesCoarserAndPlanarLast) {
 
 TEST_F(SettingsTest, RaysAreNeededWhereAnEffectTracesThem) {
     RenderSettings settings;
-    EXPECT_TRUE(needs_rays(settings));
+    EXPECT_TRUE(needs_rays(settings, false));
     settings.shadow = false;
     settings.bounces = 0;
-    EXPECT_FALSE(needs_rays(settings)) << "no bounce, no reflection";
+    EXPECT_FALSE(needs_rays(settings, false)) << "no bounce, no reflection";
     settings.ambient = true;
-    EXPECT_TRUE(needs_rays(settings));
+    EXPECT_TRUE(needs_rays(settings, false));
     settings.ambient = settings.reflection = false;
     settings.bounces = 1;
-    EXPECT_TRUE(needs_rays(settings)) << "refraction";
+    EXPECT_TRUE(needs_rays(settings, false)) << "refraction";
     settings.refraction = false;
-    EXPECT_FALSE(needs_rays(settings));
+    EXPECT_FALSE(needs_rays(settings, false));
     settings.counters = true;
-    EXPECT_TRUE(needs_rays(settings)) << "counts are asked for, of no rays";
+    EXPECT_TRUE(needs_rays(settings, false)) << "counts are asked for, of no rays";
 }
 
 }  // namespace
