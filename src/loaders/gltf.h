@@ -22,6 +22,7 @@ struct GltfLoader {
     std::vector<std::vector<uint32_t>> uv_sets;  ///< per material: the TEXCOORD_ that its textures use, as they count
     std::map<std::tuple<int, int, int, int, int>, int> texture_ids;  ///< image, wraps, filters → Scene::textures
     std::optional<size_t> variant;                                   ///< that which chooses the primitives' materials
+    std::map<std::pair<int, float>, int> rough_textures;             ///< by one of glossiness and its factor
     float point_size = 0;                                            ///< LoadOptions::point_size
     std::map<uint32_t, uint32_t> unlit_copies;                       ///< of materials, by those
     std::map<int, std::string> damaged_images;                       ///< and what is wrong with them

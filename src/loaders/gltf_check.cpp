@@ -21,9 +21,10 @@ using nlohmann::json;
 
 constexpr std::array supported_extensions = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
-     "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume",
-     "KHR_node_visibility", "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
+     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+     "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
+     "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume", "KHR_node_visibility",
+     "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
 
 /// Half of pi, and what rounding may add to it.
 constexpr double kRightAngle = 1.5707964;
@@ -188,6 +189,10 @@ Members material_members() {
         object("extensions",
                {object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
                 object("KHR_materials_ior", {within(0, INFINITY, number("ior"))}),
+                object("KHR_materials_pbrSpecularGlossiness",
+                       {within(0, 1, numbers("diffuseFactor", 4)), texture("diffuseTexture"),
+                        within(0, 1, numbers("specularFactor", 3)), within(0, 1, number("glossinessFactor")),
+                        texture("specularGlossinessTexture")}),
                 object("KHR_materials_specular",
                        {within(0, 1, number("specularFactor")), texture("specularTexture"),
                         within(0, INFINITY, numbers("specularColorFactor", 3)), texture("specularColorTexture")}),

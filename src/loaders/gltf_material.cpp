@@ -99,10 +99,11 @@ class MaterialReader {
     void read() {
         material_.name = from_.name;
         material_.double_sided = from_.doubleSided;
-        read_metallic_roughness();
+        const tinygltf::Value& glossy = extension(from_.extensions, "KHR_materials_pbrSpecularGlossiness");
+        glossy.IsObject() ? read_specular_glossiness(glossy) : read_metallic_roughness();
         read_emission();
         read_transmission();
-        read_reflectance();
+        if (!glossy.IsObject()) read_reflectance();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
         material_.normal_texture = use(TextureInfo::of(from_.normalTexture));
         material_.normal_scale = static_cast<float>(from_.normalTexture.scale);
@@ -124,6 +125,38 @@ class MaterialReader {
         material_.roughness_texture = use(TextureInfo::of(pbr.metallicRoughnessTexture), 1);
         material_.metallic_texture = material_.roughness_texture;
         material_.metallic_texture.channel = 2;
+    }
+
+    /// No metal: the reflection at normal incidence is stated, whatever the index of refraction.
+    void read_specular_glossiness(const tinygltf::Value& from) {
+        const glm::vec4 diffuse = glm::clamp(vector(from, "diffuseFactor", glm::vec4(1)), 0.f, 1.f);
+        material_.base_color = glm::vec3(diffuse);
+        material_.alpha = diffuse.a;
+        material_.base_color_texture = use(TextureInfo::of(from, "diffuseTexture"), 0, true);
+        material_.ior = 0;
+        material_.specular_color = glm::clamp(vector(from, "specularFactor", glm::vec3(1)), 0.f, 1.f);
+        material_.specular_color_texture = use(TextureInfo::of(from, "specularGlossinessTexture"));
+        const float glossiness = unit(number(from, "glossinessFactor", 1));
+        material_.roughness = 1 - glossiness;
+        material_.roughness_texture = use(TextureInfo::of(from, "specularGlossinessTexture"), 3);
+        if (!material_.roughness_texture) return;
+        material_.roughness = 1;
+        material_.roughness_texture.texture = rough_texture(material_.roughness_texture.texture, glossiness);
+    }
+
+    /// The texture whose alpha is what a texture's alpha times `glossiness` leaves of 1.
+    int rough_texture(int texture, float glossiness) {
+        const auto [entry, added] =
+            loader_.rough_textures.try_emplace({texture, glossiness}, int(loader_.scene.textures.size()));
+        if (!added) return entry->second;
+        Texture rough = loader_.scene.textures[static_cast<size_t>(texture)];
+        const auto left = [&](uint64_t alpha, uint64_t most) {
+            return static_cast<uint64_t>(std::lround(double(most) - glossiness * double(alpha)));
+        };
+        for (uint32_t& t : rough.texels) t = (t & 0xffffff) | static_cast<uint32_t>(left(t >> 24, 255)) << 24;
+        for (uint64_t& t : rough.deep_texels) t = (t & 0xffffffffffff) | left(t >> 48, 65535) << 48;
+        loader_.scene.textures.push_back(std::move(rough));
+        return entry->second;
     }
 
     void read_alpha_mode() {

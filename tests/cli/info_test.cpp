@@ -58,13 +58,14 @@ TEST_F(InfoCommand, Variants) {
 
 TEST_F(InfoCommand, MasksAndBlending) {
     auto gltf = square_gltf();
-    gltf["materials"] = {{{"name", "leaf"}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}},
-                         {{"name", "veil"}, {"alphaMode", "BLEND"}}};
+    gltf["materials"] = {
+        {{"name", "leaf"}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}},
+        {{"name", "veil"}, {"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}};
     put("square.bin", square_bytes());
     put("square.gltf", gltf.dump());
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
-    expect_says(run.out, {"holes where alpha is below 0.25", "note 1 material with alphaMode BLEND drawn opaque"});
+    expect_says(run.out, {"holes where alpha is below 0.25", "blended by its alpha of 0.5"});
     EXPECT_EQ(run.out.find("MASK"), std::string::npos) << run.out;
 }
 

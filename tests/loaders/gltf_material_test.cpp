@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "image/image.h"
 #include "loaders/scene_files.h"
 #include "scene/alpha_test.h"
 #include "scene/sidedness.h"
@@ -44,6 +45,103 @@ TEST(GltfMaterial, ImagesOfOtherTypesAreNoted) {
         }
 }
 
+TEST(GltfMaterial, SpecularAndGlossiness) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+    write_png(folder / "a.png", Image8{1, 1, {0x331e140au}}, true);
+    gltf["images"] = {{{"uri", "a.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    const char* text = R"([{"pbrMetallicRoughness": {"metallicFactor": 1, "baseColorFactor": [0, 0, 0, 1]},
+        "extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.1, 0.2, 0.3, 0.4],
+        "specularFactor": [0.5, 0.6, 0.7], "glossinessFactor": 0.75}}},
+        {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"glossinessFactor": 0.5,
+        "specularGlossinessTexture": {"index": 0}}}},
+        {"extensions": {"KHR_materials_pbrSpecularGlossiness": {}}}])";
+    gltf["materials"] = json::parse(text);
+    const Scene scene = load(folder, gltf);
+    EXPECT_TRUE(scene.notes.empty()) << all_notes(scene);
+    const Material& m = scene.materials.at(0);
+    expect_near(m.base_color, {0.1f, 0.2f, 0.3f});
+    EXPECT_FLOAT_EQ(m.alpha, 0.4f);
+    EXPECT_EQ(m.metallic, 0);
+    EXPECT_EQ(m.ior, 0);  // whose reflection at normal incidence is all of the colour
+    expect_near(m.specular_color, {0.5f, 0.6f, 0.7f});
+    EXPECT_FLOAT_EQ(m.roughness, 0.25f);
+    const Material& textured = scene.materials.at(1);
+    EXPECT_EQ(textured.roughness, 1);
+    ASSERT_TRUE(textured.roughness_texture && textured.specular_color_texture);
+    EXPECT_EQ(textured.roughness_texture.channel, 3u);
+    // 1 - 0.5 · 51 / 255 = 0.9
+    EXPECT_EQ(scene.textures.at(size_t(textured.roughness_texture.texture)).texels.at(0) >> 24, 230u);
+    EXPECT_EQ(scene.textures.at(size_t(textured.specular_color_texture.texture)).texels.at(0), 0x331e140au);
+    EXPECT_EQ(scene.materials.at(2).roughness, 0);
+    expect_near(scene.materials.at(2).specular_color, {1, 1, 1});
+}
+
+TEST(GltfMaterial, SamplersSayHowTexturesAreFiltered) {
+    const TempFolder folder;
+    using Mipmaps = Texture::Mipmaps;
+    struct Case {
+        json sampler;
+        bool nearest, min_nearest;
+        Mipmaps mipmaps;
+    };
+    const Case cases[] = {{json::object(), false, false, Mipmaps::linear},
+                          {{{"magFilter", 9728}}, true, false, Mipmaps::linear},
+                          {{{"magFilter", 9729}, {"minFilter", 9728}}, false, true, Mipmaps::none},
+                          {{{"minFilter", 9729}}, false, false, Mipmaps::none},
+                          {{{"minFilter", 9984}}, false, true, Mipmaps::nearest},
+                          {{{"minFilter", 9985}}, false, false, Mipmaps::nearest},
+                          {{{"minFilter", 9986}}, false, true, Mipmaps::linear},
+                          {{{"minFilter", 9987}}, false, false, Mipmaps::linear}};
+    for (const Case& c : cases) {
+        json gltf = square();
+        write_png(folder / "a.png", Image8{1, 1, {0x331e140au}}, true);
+        gltf["images"] = {{{"uri", "a.png"}}};
+        gltf["samplers"] = {c.sampler};
+        gltf["textures"] = {{{"source", 0}, {"sampler", 0}}};
+        gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
+        const Scene scene = load(folder, gltf);
+        EXPECT_TRUE(scene.notes.empty()) << all_notes(scene);
+        const Texture& t = scene.textures.at(0);
+        EXPECT_EQ(t.nearest, c.nearest) << c.sampler;
+        EXPECT_EQ(t.min_nearest, c.min_nearest) << c.sampler;
+        EXPECT_EQ(t.mipmaps, c.mipmaps) << c.sampler;
+        gltf["samplers"][0]["minFilter"] = 1234;
+        EXPECT_TRUE(has_note(load(folder, gltf), "1 unknown filter of textures ignored (VALUE_NOT_IN_LIST)"));
+    }
+}
+
+TEST(GltfMaterial, BlendingIsCoverageWhereAlphaIsLess) {
+    const TempFolder folder;
+    const auto material = [&](const char* text, uint8_t alpha) {
+        json gltf = square();
+        write_png(folder / "a.png", Image8{2, 1, {0xff1e140au, uint32_t(alpha) << 24 | 0x1e140au}}, true);
+        gltf["images"] = {{{"uri", "a.png"}}};
+        gltf["textures"] = {{{"source", 0}}};
+        gltf["materials"] = {json::parse(text)};
+        gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_volume"};
+        return load(folder, gltf);
+    };
+    const char* plain = R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})";
+    EXPECT_FALSE(material(plain, 255).materials[0].blended);  // all of it is there
+    EXPECT_TRUE(material(plain, 254).materials[0].blended);
+    EXPECT_EQ(material(plain, 1).materials[0].alpha_cutoff, 0);
+    EXPECT_GT(material(plain, 0).materials[0].alpha_cutoff, 0);  // holes
+    EXPECT_TRUE(material(R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}})", 255)
+                    .materials[0]
+                    .blended);
+    EXPECT_FALSE(
+        material(R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}})", 255).materials[0].blended);
+    const Scene volume = material(R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]},
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+        "KHR_materials_volume": {"thicknessFactor": 1}}})",
+                                  255);
+    EXPECT_FALSE(volume.materials[0].blended);
+    EXPECT_TRUE(has_note(volume, "alphaMode BLEND of 1 material that bounds a refracting volume ignored"));
+}
+
 TEST(GltfMaterial, Materials) {
     const TempFolder folder;
     json gltf = square();
@@ -69,7 +167,8 @@ TEST(GltfMaterial, Materials) {
     EXPECT_TRUE(m.unlit);
     EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_clearcoat"});
     EXPECT_EQ(scene.extensions_used.size(), 2u);
-    EXPECT_TRUE(has_note(scene, "BLEND"));
+    EXPECT_TRUE(has_note(scene, "BLEND"));  // it bounds a volume
+    EXPECT_FALSE(m.blended);
 }
 
 TEST(GltfMaterial, ReflectanceOfDielectrics) {
@@ -141,7 +240,8 @@ TEST(GltfMaterial, AlphaModes) {
     scene = with({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", factor}});
     EXPECT_EQ(scene.materials.at(0).alpha_cutoff, 0);
     EXPECT_EQ(corners_present(scene), all(true));
-    EXPECT_TRUE(has_note(scene, "1 material with alphaMode BLEND drawn opaque"));
+    EXPECT_TRUE(scene.materials.at(0).blended);
+    EXPECT_TRUE(scene.notes.empty()) << all_notes(scene);
 }
 
 TEST(GltfMaterial, MasksMultiplyFactorTextureAndVertexAlpha) {
