@@ -48,7 +48,8 @@ bool mayTransmit(uint triangle) {
 // colour a material is read again wherever it is needed rather than kept.
 layout(constant_id = 20) const uint material_kinds = 0u;
 const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u,
-           filtered = (material_kinds & MATERIALS_FILTERED) != 0u, blended = (material_kinds & MATERIALS_BLENDED) != 0u;
+           filtered = (material_kinds & MATERIALS_FILTERED) != 0u, blended = (material_kinds & MATERIALS_BLENDED) != 0u,
+           coated = (material_kinds & MATERIALS_COATED) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {
@@ -63,12 +64,14 @@ struct Material {
     vec3 f0;          ///< see GpuMaterial
     float f90;
     vec3 fresnel_fit;
+    float clearcoat;
+    float coat_roughness;
     uint flags;  ///< MATERIAL_*
 };
 /// What a point's textures give; the record's factors times this.
 struct TextureFactors {
     vec3 emissive, specular_color;
-    float metallic, roughness, transmission, thickness, occlusion, specular;
+    float metallic, roughness, transmission, thickness, occlusion, specular, clearcoat, coat_roughness;
 };
 
 /// Several uses that follow each other are often one image.
@@ -98,7 +101,7 @@ vec4 baseColor(uint material, TexturePlace place) {
 
 /// All textures of a material but the base colour's and the normal's.
 TextureFactors textureFactors(uint material, TexturePlace place) {
-    TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+    TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
     if (!textured || (materials[material].flags & MATERIAL_TEXTURED) == 0u) return f;
     const int emission = materials[material].textures[TEXTURE_EMISSIVE];
     if (emission >= 0) f.emissive = textureAt(emission, place).rgb;
@@ -111,13 +114,17 @@ TextureFactors textureFactors(uint material, TexturePlace place) {
     f.transmission = textureNumber(material, TEXTURE_TRANSMISSION, place, last);
     f.thickness = textureNumber(material, TEXTURE_THICKNESS, place, last);
     f.specular = textureNumber(material, TEXTURE_SPECULAR, place, last);
+    if (coated) {
+        f.clearcoat = textureNumber(material, TEXTURE_CLEARCOAT, place, last);
+        f.coat_roughness = textureNumber(material, TEXTURE_COAT_ROUGHNESS, place, last);
+    }
     return f;
 }
 
 /// The material where its textures give these factors.
 Material evaluate(uint material, TextureFactors f) {
     const GpuMaterial r = materials[material];
-    Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, r.flags);
+    Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, coated ? r.clearcoat : 0.0, r.coat_roughness, r.flags);
     if (!specified) m.flags &= ~MATERIAL_SCHLICK;  // none has it: the compiler may know
     if (textured) {
         m.metallic *= f.metallic;
@@ -125,6 +132,8 @@ Material evaluate(uint material, TextureFactors f) {
         m.roughness *= f.roughness;
         m.transmission *= f.transmission;
         m.thickness *= f.thickness;
+        m.clearcoat *= f.clearcoat;
+        m.coat_roughness *= f.coat_roughness;
         if ((m.flags & MATERIAL_SCHLICK) != 0u) {  // KHR_materials_specular
             m.f90 *= f.specular;
             m.f0 = min(r.fresnel_fit * f.specular_color, vec3(1)) * m.f90;
@@ -140,8 +149,11 @@ float materialIndex(uint material) { return materials[material].ior; }
 /// Absorption inside the volume of a material.
 vec3 materialAbsorption(uint material) { return materials[material].absorption; }
 
-/// Does the material bend normals?
-bool bendsNormals(uint material) { return textured && materials[material].textures[TEXTURE_NORMAL] >= 0; }
+/// Does the material bend the surface's normals, or with TEXTURE_COAT_NORMAL those of its coat?
+bool bendsNormals(uint material, int use) { return textured && materials[material].textures[use] >= 0; }
+
+/// Has the material a coat, somewhere at least?
+bool isCoated(uint material) { return coated && materials[material].clearcoat > 0.0; }
 
 /// A vertex's tangent, and the side of its bitangent.
 vec4 tangentOf(uint material, uint vertex) {
@@ -150,9 +162,9 @@ vec4 tangentOf(uint material, uint vertex) {
 }
 
 /// The normal's parts along the tangent, the bitangent and the interpolated normal (glTF 2.0, section 3.9.3).
-vec3 normalParts(uint material, TexturePlace place) {
-    const float scale = materials[material].normal_scale;
-    return (textureAt(materials[material].textures[TEXTURE_NORMAL], place).rgb * 2.0 - 1.0) * vec3(scale, scale, 1);
+vec3 normalParts(uint material, int use, TexturePlace place) {
+    const float scale = use == TEXTURE_NORMAL ? materials[material].normal_scale : materials[material].coat_normal_scale;
+    return (textureAt(materials[material].textures[use], place).rgb * 2.0 - 1.0) * vec3(scale, scale, 1);
 }
 #endif
 

@@ -19,7 +19,10 @@ namespace peelray {
 #define TEXTURE_OCCLUSION 7
 #define TEXTURE_SPECULAR 8
 #define TEXTURE_SPECULAR_COLOR 9
-#define TEXTURE_USES 10
+#define TEXTURE_CLEARCOAT 10
+#define TEXTURE_COAT_ROUGHNESS 11
+#define TEXTURE_COAT_NORMAL 12
+#define TEXTURE_USES 13
 
 struct GpuMaterial {
     vec3 base_color;
@@ -30,10 +33,13 @@ struct GpuMaterial {
     float transmission;
     float ior;
     int textures[TEXTURE_USES];  ///< by TEXTURE_*: an entry of the table of textures, -1: none
-    uint channels;       ///< of those of single numbers, two bits each
+    uint channels;       ///< of those of single numbers, two bits each, in the same order
     uint first_tangent;  ///< of the vertices' tangents, which lie behind the texture coordinates, two entries each
     float normal_scale;
     float occlusion_strength;
+    float clearcoat;  ///< share of the surface that has a coat
+    float coat_roughness;
+    float coat_normal_scale;
     uint flags;          ///< MATERIAL_*
     float thickness;     ///< of a volume, world units; rays measure it, cube maps cannot
     float alpha;         ///< of the base colour
@@ -42,7 +48,7 @@ struct GpuMaterial {
     float f90;           ///< MATERIAL_SCHLICK: at grazing angles
     vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of (1 - cosine) in split_sum.h
 };
-SHARED_SIZE(GpuMaterial, 152);
+SHARED_SIZE(GpuMaterial, 176);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
 #define MATERIAL_COLORED 4u       // vertices have colours
@@ -52,6 +58,7 @@ SHARED_SIZE(GpuMaterial, 152);
 #define MATERIAL_BLENDED 64u      // covers what is behind it by its alpha only
 /// Of all materials of a scene:
 #define MATERIALS_BLENDED 8u  // some are MATERIAL_BLENDED
+#define MATERIALS_COATED 16u  // some have a clear coat
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
 #define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
 #define MATERIALS_FILTERED 4u   // some have textures whose filter depends on how large they are seen

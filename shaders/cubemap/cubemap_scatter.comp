@@ -27,10 +27,10 @@ GpuObject object;  // of this thread's hit
 
 /// A cube map holds the whole lobe, blurred: one lookup along the mirror direction.
 bool samplesMicrofacets() { return false; }
-vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) { return s.normal; }
-float tracedPart(Material m) { return 1.0; }
-void decide(inout Branch branch, RayState state, uint effect, bool passes) {
-    branch.traced = (frame[0].effects & effect) != 0u && object.probe != NO_PROBE;
+vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose) { return normal; }
+float tracedPart(float roughness, float metallic) { return 1.0; }
+void decide(inout Branch branch, RayState state, bool passes) {
+    branch.traced = (frame[0].effects & branch.effect) != 0u && object.probe != NO_PROBE;
 }
 
 /// Light from a direction: the probe's, and where it holds nothing the environment's.
@@ -69,9 +69,10 @@ void main() {
         radiance += reflection.weight * seen(reflection, m.roughness);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).
+        const bool coat = coated && refraction.effect == EFFECT_REFLECTION;
         vec3 through = refraction.weight;
-        if (refraction.traced && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
-        radiance += through * seen(refraction, m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
+        if (refraction.traced && !coat && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
+        radiance += through * seen(refraction, coat ? m.coat_roughness : m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0));
     }
     nodes[i] = PathNode(radiance, 0u, flags);
 }

@@ -15,18 +15,19 @@ struct Branch {
     bool traced;      ///< or looked up in a cube map
     float blur;       ///< roughness for the environment, if not traced
     uint cone;        ///< of the new ray
+    uint effect;      ///< EFFECT_* that it is
 };
-const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u);
+const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u);
 
 // Defined by the shader that includes this.
 /// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
 bool samplesMicrofacets();
-/// The half vector of a reflection.
-vec3 microfacet(Surface s, vec3 view, float alpha, uint seed);
+/// The half vector of a reflection around `normal`; `purpose`: RANDOM_*.
+vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
-float tracedPart(Material m);
-/// Sets `traced`; `passes`: the ray goes on through a blended surface.
-void decide(inout Branch branch, RayState state, uint effect, bool passes);
+float tracedPart(float roughness, float metallic);
+/// Sets `traced` by the branch's effect; `passes`: the ray goes on through a blended surface.
+void decide(inout Branch branch, RayState state, bool passes);
 
 /// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin glass sends its
 /// light the same way.
@@ -34,8 +35,46 @@ void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 
     radiance *= s.alpha;
     reflection.weight *= s.alpha;
     const uint passed = (state.medium & RAY_PASSES) == RAY_PASSES ? state.medium : state.medium + RAY_PASSED;
-    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, filtered ? packCone(cone) : 0u);
-    decide(refraction, state, EFFECT_REFRACTION, true);
+    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, filtered ? packCone(cone) : 0u, EFFECT_REFRACTION);
+    decide(refraction, state, true);
+}
+
+/// What the untraced part of a wide lobe sees, at once; the branch keeps the rest.
+vec3 fade(inout Branch branch, float roughness, float metallic) {
+    const float part = tracedPart(roughness, metallic);
+    if (part >= 1.0) return vec3(0);
+    const vec3 seen = branch.weight * (1.0 - part) * environmentRadiance(branch.direction, roughness);
+    branch.weight *= part;
+    branch.traced = branch.traced && part > 0.0;
+    return seen;
+}
+
+/// A clear coat on a surface takes its share of the light and lets the rest through, both ways at once (KHR_materials_clearcoat). What it
+/// mirrors is the second branch of an opaque surface; glass and blended surfaces, which need that one, mirror it with their own.
+void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bool has_second, inout vec3 radiance, inout Branch reflection,
+             inout Branch refraction) {
+    const vec3 view = -incoming;
+    const float share = coatShare(m, dot(view, s.coat_normal)), alpha = m.coat_roughness * m.coat_roughness;
+    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS;
+    radiance *= 1.0 - share;
+    reflection.weight *= 1.0 - share;
+    refraction.weight *= 1.0 - share;
+    if (has_second) {
+        reflection.weight += share;
+        decide(reflection, state, false);
+        return;
+    }
+    const vec3 h = microfacet(s.coat_normal, view, alpha, state.seed, RANDOM_COAT), reflected = reflect(incoming, h);
+    float weight = share;
+    if (samplesMicrofacets() && !mirror) {
+        const float above = dot(reflected, s.coat_normal);
+        weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * (above > 0.0 ? ggxMasking(above, alpha) : 0.0);
+    }
+    refraction = Branch(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(mirror ? 0u : RAY_SEES_SUN), false, 0.0,
+                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u, EFFECT_REFLECTION);
+    decide(refraction, state, false);
+    radiance += fade(refraction, m.coat_roughness, 0.0);
+    refraction.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
 }
 
 /// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
@@ -52,7 +91,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     const bool thin = (m.flags & MATERIAL_THIN) != 0u;
     const bool transparent = transmits(m);
     const float alpha = m.roughness * m.roughness;
-    const vec3 h = microfacet(s, view, alpha, state.seed);
+    const vec3 h = microfacet(s.normal, view, alpha, state.seed, RANDOM_MICROFACET);
     const float cosine = clamp(dot(view, h), 0.0, 1.0);
     const bool mirror = m.roughness < MIRROR_ROUGHNESS, averaged = !samplesMicrofacets() && !mirror;
     vec3 dielectric = vec3(0);
@@ -75,15 +114,9 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
             weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
     }
     reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0,
-                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u);
-    decide(reflection, state, EFFECT_REFLECTION, false);
-
-    const float part = transparent ? 1.0 : tracedPart(m);
-    if (part < 1.0) {  // the untraced part of a wide lobe, at once
-        radiance += reflection.weight * (1.0 - part) * environmentRadiance(reflection.direction, m.roughness);
-        reflection.weight *= part;
-        reflection.traced = reflection.traced && part > 0.0;
-    }
+                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u, EFFECT_REFLECTION);
+    decide(reflection, state, false);
+    if (!transparent) radiance += fade(reflection, m.roughness, m.metallic);
     reflection.blur = samplesMicrofacets() ? 0.0 : m.roughness;
 
     if (transparent) {
@@ -97,10 +130,11 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
             const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
             const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & RAY_PASSES);
             const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
-            refraction = Branch(through, direction, inside | sun, false, 0.0, filtered ? packCone(beyond) : 0u);
-            decide(refraction, state, EFFECT_REFRACTION, false);
+            refraction = Branch(through, direction, inside | sun, false, 0.0, filtered ? packCone(beyond) : 0u, EFFECT_REFRACTION);
+            decide(refraction, state, false);
         }
     }
+    if (coated && m.clearcoat > 0.0) addCoat(s, m, incoming, state, cone, transparent || s.alpha < 1.0, radiance, reflection, refraction);
     if (blended && s.alpha < 1.0) passBeside(s, incoming, state, cone, radiance, reflection, refraction);
     return radiance;
 }

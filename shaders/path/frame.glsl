@@ -17,6 +17,7 @@ struct Surface {
     vec3 position;
     vec3 geometric;    ///< unit normal of the triangle, on the ray's side
     vec3 normal;       ///< interpolated and bent by the normal texture, unit, on the ray's side
+    vec3 coat_normal;  ///< of a clear coat
     vec3 shadow_start; ///< position moved to the smooth surface (see shadowStart)
     vec3 base_color;
     float alpha;       ///< share of the surface that is there; the rest of the light goes straight on
@@ -53,7 +54,7 @@ vec3 directionOr(vec3 v, vec3 otherwise) { return dot(v, v) > 0.0 ? normalize(v)
 
 /// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there are no tangents. As
 /// MikkTSpace has it, nothing is made unit before the sum.
-vec3 bentNormal(uint material, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
+vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
     const vec4 ta = tangentOf(material, place.corners.x), tb = tangentOf(material, place.corners.y), tc = tangentOf(material, place.corners.z);
     const vec3 weights = place.weights;
     vec3 a = ta.xyz, b = tb.xyz, c = tc.xyz;
@@ -65,7 +66,7 @@ vec3 bentNormal(uint material, TexturePlace place, mat3 linear, float turned, ve
     const vec3 tangent = a * weights.x + b * weights.y + c * weights.z;
     const float side = (ta.w * weights.x + tb.w * weights.y + tc.w * weights.z) * turned;
     if (side == 0.0 || dot(tangent, tangent) == 0.0) return otherwise;
-    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, place);
+    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, use, place);
     return directionOr(tangent * parts.x + bitangent * parts.y + normal * parts.z, otherwise);
 }
 
@@ -116,8 +117,14 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
     }
     vec3 bent = normal;
     s.material = triangle_materials[triangle];
-    if (bendsNormals(s.material)) bent = bentNormal(s.material, place, linear, turned, interpolated, normal);
+    if (bendsNormals(s.material, TEXTURE_NORMAL)) bent = bentNormal(s.material, TEXTURE_NORMAL, place, linear, turned, interpolated, normal);
     s.normal = visibleNormal(bent * side, s.geometric, -direction);
+    s.coat_normal = s.normal;
+    if (isCoated(s.material)) {
+        bent = normal;
+        if (bendsNormals(s.material, TEXTURE_COAT_NORMAL)) bent = bentNormal(s.material, TEXTURE_COAT_NORMAL, place, linear, turned, interpolated, normal);
+        s.coat_normal = visibleNormal(bent * side, s.geometric, -direction);
+    }
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     const vec4 color = baseColor(s.material, place);
     s.base_color = color.rgb;

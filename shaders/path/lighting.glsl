@@ -26,20 +26,28 @@ vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distan
     return light.color * strength;
 }
 
+/// The lobe of GGX around a normal, times the cosine; less Fresnel's share.
+float highlight(vec3 normal, float roughness, vec3 view, vec3 to_light, vec3 h) {
+    const float n_l = dot(normal, to_light);
+    if (n_l <= 0.0 || roughness < MIRROR_ROUGHNESS) return 0.0;
+    const float n_v = max(GRAZING_COSINE, dot(normal, view)), n_h = clamp(dot(normal, h), 0.0, 1.0), alpha = roughness * roughness;
+    return ggxDistribution(n_h, alpha) * ggxMasking(n_v, alpha) * ggxMasking(n_l, alpha) / (4.0 * n_v);
+}
+
 /// Reflected share of light from `to_light`, times the cosine.
 vec3 reflectance(Surface s, Material m, vec3 view, vec3 to_light) {
-    const float n_l = dot(s.normal, to_light);
-    if (n_l <= 0.0) return vec3(0);
     const vec3 h = normalize(view + to_light);
-    const float n_v = max(GRAZING_COSINE, dot(s.normal, view)), n_h = clamp(dot(s.normal, h), 0.0, 1.0), v_h = clamp(dot(view, h), 0.0, 1.0);
-    const vec3 dielectric = dielectricReflectance(m, v_h, leavesVolume(m, s.front));
-    vec3 result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - largest(dielectric)) * s.base_color / PI;
-    if (m.roughness >= MIRROR_ROUGHNESS) {
-        const float alpha = m.roughness * m.roughness;
-        const vec3 fresnel = mix(dielectric, fresnelSchlick(s.base_color, 1.0, v_h), m.metallic);
-        result += fresnel * ggxDistribution(n_h, alpha) * ggxMasking(n_v, alpha) * ggxMasking(n_l, alpha) / (4.0 * n_v * n_l);
+    const float n_l = dot(s.normal, to_light), v_h = clamp(dot(view, h), 0.0, 1.0);
+    vec3 result = vec3(0);
+    if (n_l > 0.0) {
+        const vec3 dielectric = dielectricReflectance(m, v_h, leavesVolume(m, s.front));
+        result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - largest(dielectric)) * s.base_color / PI * n_l;
+        if (m.roughness >= MIRROR_ROUGHNESS)
+            result += mix(dielectric, fresnelSchlick(s.base_color, 1.0, v_h), m.metallic) * highlight(s.normal, m.roughness, view, to_light, h);
     }
-    return result * n_l;
+    if (!coated || m.clearcoat == 0.0) return result;
+    return result * (1.0 - coatShare(m, dot(view, s.coat_normal))) +
+           m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, v_h) * highlight(s.coat_normal, m.coat_roughness, view, to_light, h);
 }
 
 /// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light. The
@@ -58,7 +66,7 @@ vec3 skyLight(Surface s, Material m, vec3 view) {
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
     const vec3 mirrored = m.roughness < MIRROR_ROUGHNESS ? dielectricReflectance(m, cosine, leavesVolume(m, s.front))
                                                          : dielectricAlbedo(m, splitSum(m.roughness, cosine));
-    return diffuse * m.occlusion * (1.0 - largest(mirrored)) * environmentIrradiance(s.normal);
+    return diffuse * m.occlusion * (1.0 - largest(mirrored)) * (1.0 - coatShare(m, dot(view, s.coat_normal))) * environmentIrradiance(s.normal);
 }
 
 #endif

@@ -47,26 +47,27 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 
 shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
 shared uint group_cut[2];     // reflection, refraction that the last level cuts off
+shared uint group_coats;      // of the refractions those that clear coats mirror
 shared uint group_first;
 shared uint group_first_light;
 
 bool samplesMicrofacets() { return frame[0].spp > 1u; }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
-vec3 microfacet(Surface s, vec3 view, float alpha, uint seed) {
-    if (!samplesMicrofacets() || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
+vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose) {
+    if (!samplesMicrofacets() || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return normal;
     vec3 t, b;
-    tangents(s.normal, t, b);
-    const vec3 local = vec3(dot(view, t), dot(view, b), max(GRAZING_COSINE, dot(view, s.normal)));
-    const vec2 random = randomPair(seed, params.sample_index, RANDOM_MICROFACET);
+    tangents(normal, t, b);
+    const vec3 local = vec3(dot(view, t), dot(view, b), max(GRAZING_COSINE, dot(view, normal)));
+    const vec2 random = randomPair(seed, params.sample_index, purpose);
     const vec3 h = sampleGgx(normalize(local), alpha, random);
-    return normalize(t * h.x + b * h.y + s.normal * h.z);
+    return normalize(t * h.x + b * h.y + normal * h.z);
 }
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
-float tracedPart(Material m) {
-    if (frame[0].spp > 1u) return m.roughness < TRACED_ROUGHNESS || m.metallic > MOSTLY_METAL ? 1.0 : 0.0;
-    return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, m.roughness);
+float tracedPart(float roughness, float metallic) {
+    if (frame[0].spp > 1u) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
+    return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, roughness);
 }
 
 /// Has the ray come as far as it is followed? Without blended surfaces its level is its bounces.
@@ -75,13 +76,13 @@ bool isLast(uint medium, bool passes) {
     return params.level >= min(frame[0].last_level, frame[0].bounces + (medium & RAY_PASSES) / RAY_PASSED);
 }
 
-void decide(inout Branch branch, RayState state, uint effect, bool passes) {
-    branch.traced = (frame[0].effects & effect) != 0u && !isLast(state.medium, passes) && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
+void decide(inout Branch branch, RayState state, bool passes) {
+    branch.traced = (frame[0].effects & branch.effect) != 0u && !isLast(state.medium, passes) && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 
 /// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
-bool isCut(Branch branch, RayState state, uint effect, bool passes) {
-    return params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & effect) != 0u &&
+bool isCut(Branch branch, RayState state, bool passes) {
+    return params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & branch.effect) != 0u &&
            largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 
@@ -130,7 +131,7 @@ vec3 arrivingLight(uint index, Surface s, Material m, vec3 view, SurfaceId from,
 vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
     rays = sky_rays = 0u;
     // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
-    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0)) return vec3(0);
+    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0) return vec3(0);
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
@@ -167,8 +168,9 @@ void reserve() {
     const uint rays = group_counts[0] + group_counts[1];
     if (rays > 0u) {
         group_first = atomicAdd(queue[params.level + 1u], rays);
-        if (group_counts[0] > 0u) atomicAdd(queue[QUEUE_REFLECTION], group_counts[0]);
-        if (group_counts[1] > 0u) atomicAdd(queue[QUEUE_REFRACTION], group_counts[1]);
+        const uint coats = coated ? group_coats : 0u, reflections = group_counts[0] + coats, refractions = group_counts[1] - coats;
+        if (reflections > 0u) atomicAdd(queue[QUEUE_REFLECTION], reflections);
+        if (refractions > 0u) atomicAdd(queue[QUEUE_REFRACTION], refractions);
         if (group_first + rays > params.next_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_PATHS);
     }
     if (group_cut[0] > 0u) atomicAdd(queue[QUEUE_CUT_REFLECTION], group_cut[0]);
@@ -245,10 +247,10 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     state.weight *= c.lost;
     c.path_weight = state.weight;
     c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, c.reflection, c.refraction);
-    c.refraction.weight *= beside;
+    if (c.refraction.effect == EFFECT_REFRACTION) c.refraction.weight *= beside;
     // What is not traced sees the environment.
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
-    if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, 0.0);
+    if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, c.refraction.blur);
     uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
     if ((m.flags & MATERIAL_UNLIT) != 0u)
@@ -256,10 +258,12 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     else
         c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
-    if (isCut(c.reflection, state, EFFECT_REFLECTION, false)) atomicAdd(group_cut[0], 1u);
-    if (isCut(c.refraction, state, EFFECT_REFRACTION, c.surface.alpha < 1.0)) atomicAdd(group_cut[1], 1u);
+    const bool coat = coated && c.refraction.effect == EFFECT_REFLECTION;
+    if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
+    if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);
+    if (coat && c.refraction.traced) atomicAdd(group_coats, 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
     if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
 }
@@ -273,7 +277,8 @@ void emitBranches(uint i, Scattering c, uint seed) {
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        emitRay(children.child1, c.refraction, c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+        const bool mirrored = coated && c.refraction.effect == EFFECT_REFLECTION;
+        emitRay(children.child1, c.refraction, mirrored ? c.before : c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
     }
     branches[i] = children;
 }
@@ -282,6 +287,7 @@ void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
     if (lane < 4u) group_counts[lane] = 0u;
     if (lane < 2u) group_cut[lane] = 0u;
+    if (coated && lane == 0u) group_coats = 0u;
     barrier();
     Ray ray;
     RayState state;

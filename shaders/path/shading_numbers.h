@@ -59,8 +59,12 @@
 // Blended surfaces that a path goes straight through before they count as bounces.
 #define BLENDED_PASSED 8
 
+// Reflectance of a clear coat at normal incidence (KHR_materials_clearcoat).
+#define COAT_REFLECTANCE 0.04
+
 // What random numbers are for.
 #define RANDOM_MICROFACET 1
+#define RANDOM_COAT 3
 #define RANDOM_SKY 2
 
 #endif

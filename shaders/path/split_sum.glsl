@@ -20,6 +20,15 @@ vec3 dielectricAlbedo(Material m, vec4 means) {
     return (m.flags & MATERIAL_SCHLICK) != 0u ? schlick : vec3(clamp(m.f0.x * means.x + dot(m.fresnel_fit, means.yzw), 0.0, 1.0));
 }
 
+/// Share of the light that a clear coat mirrors, and keeps from what is below it; `cosine`: between the view and the coat's normal.
+float coatShare(Material m, float cosine) {
+    if (!coated || m.clearcoat == 0.0) return 0.0;
+    cosine = clamp(cosine, 0.0, 1.0);
+    if (m.coat_roughness < MIRROR_ROUGHNESS) return m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, cosine).x;
+    const vec4 means = splitSum(m.coat_roughness, cosine);
+    return m.clearcoat * (COAT_REFLECTANCE * means.x + (1.0 - COAT_REFLECTANCE) * means.z);
+}
+
 /// Share of white light that a rough metal reflects.
 vec3 metalAlbedo(vec3 base_color, vec4 means) { return base_color * means.x + (1.0 - base_color) * means.z; }
 
