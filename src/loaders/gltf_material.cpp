@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "loaders/gltf.h"
 #include "loaders/images.h"
+#include "scene/sampling.h"
 
 namespace peelray {
 
@@ -131,7 +132,7 @@ class MaterialReader {
     void read_specular_glossiness(const tinygltf::Value& from) {
         const glm::vec4 diffuse = glm::clamp(vector(from, "diffuseFactor", glm::vec4(1)), 0.f, 1.f);
         material_.base_color = glm::vec3(diffuse);
-        material_.alpha = diffuse.a;
+        material_.alpha = diffuse.w;
         material_.base_color_texture = use(TextureInfo::of(from, "diffuseTexture"), 0, true);
         material_.ior = 0;
         material_.specular_color = glm::clamp(vector(from, "specularFactor", glm::vec3(1)), 0.f, 1.f);

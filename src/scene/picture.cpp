@@ -5,8 +5,13 @@
 
 #include "base/error.h"
 #include "scene/sampling.h"
+#include "settings/limits.h"
 
 namespace peelray {
+
+uint32_t last_level(const PictureSettings& settings, bool has_blended) {
+    return std::min(settings.bounces + (has_blended ? BLENDED_PASSED : 0u), uint32_t(kBounceLimits.most));
+}
 
 float least_roughness(const Scene& scene, const Material& m) {
     if (!m.roughness_texture) return m.roughness;

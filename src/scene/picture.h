@@ -72,9 +72,7 @@ struct Picture {
 };
 
 /// The last level of the tree of rays: bounces, and the blended surfaces that a path goes straight through.
-inline uint32_t last_level(const PictureSettings& settings, bool has_blended) {
-    return std::min(settings.bounces + (has_blended ? uint32_t(BLENDED_PASSED) : 0), uint32_t(kBounceLimits.most));
-}
+uint32_t last_level(const PictureSettings& settings, bool has_blended);
 
 /// Does light pass through the material, somewhere at least?
 inline bool transmits(const Material& material) {

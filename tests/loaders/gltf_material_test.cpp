@@ -49,7 +49,7 @@ TEST(GltfMaterial, SpecularAndGlossiness) {
     const TempFolder folder;
     json gltf = square();
     gltf["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
-    write_png(folder / "a.png", Image8{1, 1, {0x331e140au}}, true);
+    write_png(folder.path() / "a.png", Image8{1, 1, {0x331e140au}}, true);
     gltf["images"] = {{{"uri", "a.png"}}};
     gltf["textures"] = {{{"source", 0}}};
     const char* text = R"([{"pbrMetallicRoughness": {"metallicFactor": 1, "baseColorFactor": [0, 0, 0, 1]},
@@ -97,7 +97,7 @@ TEST(GltfMaterial, SamplersSayHowTexturesAreFiltered) {
                           {{{"minFilter", 9987}}, false, false, Mipmaps::linear}};
     for (const Case& c : cases) {
         json gltf = square();
-        write_png(folder / "a.png", Image8{1, 1, {0x331e140au}}, true);
+        write_png(folder.path() / "a.png", Image8{1, 1, {0x331e140au}}, true);
         gltf["images"] = {{{"uri", "a.png"}}};
         gltf["samplers"] = {c.sampler};
         gltf["textures"] = {{{"source", 0}, {"sampler", 0}}};
@@ -117,7 +117,7 @@ TEST(GltfMaterial, BlendingIsCoverageWhereAlphaIsLess) {
     const TempFolder folder;
     const auto material = [&](const char* text, uint8_t alpha) {
         json gltf = square();
-        write_png(folder / "a.png", Image8{2, 1, {0xff1e140au, uint32_t(alpha) << 24 | 0x1e140au}}, true);
+        write_png(folder.path() / "a.png", Image8{2, 1, {0xff1e140au, uint32_t(alpha) << 24 | 0x1e140au}}, true);
         gltf["images"] = {{{"uri", "a.png"}}};
         gltf["textures"] = {{{"source", 0}}};
         gltf["materials"] = {json::parse(text)};
