@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr std::array supported_extensions = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength", "KHR_materials_ior",
      "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
      "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume", "KHR_node_visibility",
      "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
@@ -187,7 +187,11 @@ Members material_members() {
                                         within(0, 1, number("metallicFactor")), within(0, 1, number("roughnessFactor")),
                                         texture("baseColorTexture"), texture("metallicRoughnessTexture")}),
         object("extensions",
-               {object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
+               {object("KHR_materials_clearcoat",
+                       {within(0, 1, number("clearcoatFactor")), texture("clearcoatTexture"),
+                        within(0, 1, number("clearcoatRoughnessFactor")), texture("clearcoatRoughnessTexture"),
+                        texture("clearcoatNormalTexture", {number("scale")})}),
+                object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
                 object("KHR_materials_ior", {within(0, INFINITY, number("ior"))}),
                 object("KHR_materials_pbrSpecularGlossiness",
                        {within(0, 1, numbers("diffuseFactor", 4)), texture("diffuseTexture"),

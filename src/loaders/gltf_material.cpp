@@ -105,6 +105,7 @@ class MaterialReader {
         read_emission();
         read_transmission();
         if (!glossy.IsObject()) read_reflectance();
+        read_clearcoat();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
         material_.normal_texture = use(TextureInfo::of(from_.normalTexture));
         material_.normal_scale = static_cast<float>(from_.normalTexture.scale);
@@ -194,6 +195,18 @@ class MaterialReader {
             to_vec3(from_.emissiveFactor) * static_cast<float>(number(strength, "emissiveStrength", 1));
         material_.emissive = glm::max(material_.emissive, glm::vec3(0));
         material_.emissive_texture = use(TextureInfo::of(from_.emissiveTexture));
+    }
+
+    void read_clearcoat() {
+        const tinygltf::Value& coat = extension(from_.extensions, "KHR_materials_clearcoat");
+        material_.clearcoat = unit(number(coat, "clearcoatFactor", 0));
+        material_.coat_roughness = unit(number(coat, "clearcoatRoughnessFactor", 0));
+        if (material_.clearcoat == 0) return;
+        material_.clearcoat_texture = use(TextureInfo::of(coat, "clearcoatTexture"));
+        material_.coat_roughness_texture = use(TextureInfo::of(coat, "clearcoatRoughnessTexture"), 1);
+        material_.coat_normal_texture = use(TextureInfo::of(coat, "clearcoatNormalTexture"));
+        if (material_.coat_normal_texture)
+            material_.coat_normal_scale = static_cast<float>(number(coat.Get("clearcoatNormalTexture"), "scale", 1));
     }
 
     void read_transmission() {

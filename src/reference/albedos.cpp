@@ -43,10 +43,10 @@ Albedos::Albedos(const Scene& scene, const Surfaces& surfaces) : surfaces_(surfa
     for (const Material& m : scene.materials)
         first_table_.push_back(first_table_.back() + (m.roughness_texture ? roughnesses : 1));
     tables_ = std::make_unique<Table[]>(first_table_.back());
+    coats_ = std::make_unique<Table[]>(roughnesses);
 }
 
-Albedos::Means Albedos::look_up(const Optics& constants, size_t number, double roughness, double cosine) const {
-    Table& table = tables_[number];
+Albedos::Means Albedos::look_up(Table& table, const Optics& constants, double roughness, double cosine) const {
     std::call_once(table.made, [&] {
         Optics m = constants;
         m.roughness = roughness;
@@ -58,26 +58,36 @@ Albedos::Means Albedos::look_up(const Optics& constants, size_t number, double r
     return mixed(table.entries[lower], table.entries[lower + 1], place - double(lower));
 }
 
+Albedos::Means Albedos::between(Table* first, const Optics& constants, double roughness, double cosine) const {
+    constexpr double last = roughnesses - 1;
+    const double place = std::sqrt(std::clamp(roughness, 0.0, 1.0)) * last;
+    const size_t lower = std::min(size_t(place), roughnesses - 2);
+    // A mirror's lobe has no width to integrate over.
+    const auto table = [&](size_t i) {
+        return look_up(first[i], constants, std::max(std::pow(double(i) / last, 2), 0.5 * MIRROR_ROUGHNESS), cosine);
+    };
+    return mixed(table(lower), table(lower + 1), place - double(lower));
+}
+
 Albedos::Means Albedos::at(const Surface& surface, double cosine) const {
     const Optics &constants = surfaces_.optics(surface.material), &here = surface.optics;
-    const size_t first = first_table_[surface.material];
-    Means means;
-    if (first_table_[surface.material + 1] == first + 1) {
-        means = look_up(constants, first, constants.roughness, cosine);
-    } else {
-        constexpr double last = roughnesses - 1;
-        const double place = std::sqrt(std::clamp(here.roughness, 0.0, 1.0)) * last;
-        const size_t lower = std::min(size_t(place), roughnesses - 2);
-        // A mirror's lobe has no width to integrate over.
-        const auto table = [&](size_t i) {
-            const double roughness = std::max(std::pow(double(i) / last, 2), 0.5 * MIRROR_ROUGHNESS);
-            return look_up(constants, first + i, roughness, cosine);
-        };
-        means = mixed(table(lower), table(lower + 1), place - double(lower));
-    }
+    Table* first = &tables_[first_table_[surface.material]];
+    const bool varies = first_table_[surface.material + 1] > first_table_[surface.material] + 1;
+    Means means = varies ? between(first, constants, here.roughness, cosine)
+                         : look_up(*first, constants, constants.roughness, cosine);
     // Schlick's is linear in both reflectances, which textures change.
     if (here.specified) means.dielectric = here.f0 * means.normal + here.f90 * means.grazing;
     return means;
+}
+
+double Albedos::coat(const Surface& surface, double cosine) const {
+    const Optics& m = surface.optics;
+    if (m.clearcoat == 0) return 0;
+    cosine = std::clamp(cosine, 0.0, 1.0);
+    if (m.coat_roughness < MIRROR_ROUGHNESS)
+        return m.clearcoat * optics::fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, cosine).x;
+    const Means means = between(coats_.get(), Optics(), m.coat_roughness, cosine);
+    return m.clearcoat * (COAT_REFLECTANCE * means.normal + means.grazing);
 }
 
 }  // namespace peelray

@@ -23,6 +23,8 @@ class Albedos {
 
     /// `cosine`: between the view and the surface's normal.
     Means at(const Surface& surface, double cosine) const;
+    /// The share that the surface's clear coat mirrors; `cosine`: between the view and the coat's normal.
+    double coat(const Surface& surface, double cosine) const;
 
   private:
     static constexpr size_t steps = 64;  ///< in the square root of the cosine
@@ -34,11 +36,14 @@ class Albedos {
     /// Materials whose roughness a texture changes have a table for each of these, in the square root of the roughness;
     /// the others one, for their own.
     static constexpr size_t roughnesses = 65;
-    Means look_up(const Optics& constants, size_t table, double roughness, double cosine) const;
+    Means look_up(Table& table, const Optics& constants, double roughness, double cosine) const;
+    /// Between those of the roughnesses around; `first`: of as many tables.
+    Means between(Table* first, const Optics& constants, double roughness, double cosine) const;
 
     const Surfaces& surfaces_;
     std::vector<size_t> first_table_;  ///< per material, and the end
     std::unique_ptr<Table[]> tables_;
+    std::unique_ptr<Table[]> coats_;  ///< of all coats
 };
 
 }  // namespace peelray

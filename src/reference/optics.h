@@ -43,7 +43,7 @@ Tangents tangents(const glm::dvec3& n);
 
 /// pcg3d (Jarzynski, Olano, JCGT 2020): bit for bit the GPU's.
 glm::uvec3 hash3(glm::uvec3 v);
-enum class Purpose : uint32_t { microfacet = RANDOM_MICROFACET, sky = RANDOM_SKY };
+enum class Purpose : uint32_t { microfacet = RANDOM_MICROFACET, sky = RANDOM_SKY, coat = RANDOM_COAT };
 /// Sample `index` at a place of the tree of rays, [0, 1)²: bit for bit the GPU's.
 glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose);
 

@@ -12,10 +12,10 @@ namespace {
 using namespace optics;
 
 /// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
-double traced_part(const Optics& m, uint32_t spp) {
-    if (spp > 1) return m.roughness < TRACED_ROUGHNESS || m.metallic > MOSTLY_METAL ? 1 : 0;
+double traced_part(double roughness, double metallic, uint32_t spp) {
+    if (spp > 1) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
     const double x =
-        std::clamp((m.roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
+        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
     return 1 - x * x * (3 - 2 * x);
 }
 
@@ -43,26 +43,35 @@ Incidence incidence(const Light& light, const glm::dvec3& position) {
     return {glm::dvec3(light.color) * strength, direction};
 }
 
-/// Reflected share of light from `to_light`, times the cosine: Lambert below GGX.
-glm::dvec3 reflectance(const Surface& s, const Optics& m, const glm::dvec3& view, const glm::dvec3& to_light) {
-    const double n_l = glm::dot(s.normal, to_light);
-    if (n_l <= 0) return glm::dvec3(0);
-    const glm::dvec3 h = glm::normalize(view + to_light);
-    const double n_v = std::max(GRAZING_COSINE, glm::dot(s.normal, view)),
-                 n_h = std::clamp(glm::dot(s.normal, h), 0.0, 1.0);
-    const double v_h = std::clamp(glm::dot(view, h), 0.0, 1.0);
-    const glm::dvec3 dielectric = m.face_reflectance(v_h, m.leaves(s.front));
-    glm::dvec3 share = (1 - m.metallic) * (1 - m.transmission) * (1 - largest(dielectric)) * s.base_color / pi;
-    if (m.roughness >= MIRROR_ROUGHNESS) {
-        const double alpha = m.roughness * m.roughness;
-        const glm::dvec3 fresnel = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, v_h), m.metallic);
-        share += fresnel *
-                 (ggx_distribution(n_h, alpha) * ggx_masking(n_v, alpha) * ggx_masking(n_l, alpha) / (4 * n_v * n_l));
-    }
-    return share * n_l;
+/// The lobe of GGX around a normal, times the cosine; less Fresnel's share.
+double highlight(const glm::dvec3& normal, double roughness, const glm::dvec3& view, const glm::dvec3& to_light) {
+    const double n_l = glm::dot(normal, to_light);
+    if (n_l <= 0 || roughness < MIRROR_ROUGHNESS) return 0;
+    const double n_v = std::max(GRAZING_COSINE, glm::dot(normal, view)),
+                 n_h = std::clamp(glm::dot(normal, glm::normalize(view + to_light)), 0.0, 1.0);
+    const double alpha = roughness * roughness;
+    return ggx_distribution(n_h, alpha) * ggx_masking(n_v, alpha) * ggx_masking(n_l, alpha) / (4 * n_v);
 }
 
 }  // namespace
+
+/// Reflected share of light from `to_light`, times the cosine: Lambert below GGX, both below the coat.
+glm::dvec3 Shader::reflectance(const Surface& s, const glm::dvec3& view, const glm::dvec3& to_light) const {
+    const Optics& m = s.optics;
+    const double n_l = glm::dot(s.normal, to_light),
+                 v_h = std::clamp(glm::dot(view, glm::normalize(view + to_light)), 0.0, 1.0);
+    glm::dvec3 share(0);
+    if (n_l > 0) {
+        const glm::dvec3 dielectric = m.face_reflectance(v_h, m.leaves(s.front));
+        share = (1 - m.metallic) * (1 - m.transmission) * (1 - largest(dielectric)) * s.base_color * (n_l / pi);
+        const glm::dvec3 fresnel = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, v_h), m.metallic);
+        share += fresnel * highlight(s.normal, m.roughness, view, to_light);
+    }
+    if (m.clearcoat == 0) return share;
+    const double coat = m.clearcoat * fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, v_h).x;
+    return share * (1 - context_.albedos.coat(s, glm::dot(view, s.coat_normal))) +
+           coat * highlight(s.coat_normal, m.coat_roughness, view, to_light);
+}
 
 Meeting Shader::hit(const Path& path) const {
     return walk().next({path.origin, 0, path.direction, infinity}, path.skip, path.media);
@@ -111,9 +120,10 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
     if (scattered.reflection.traced) rays_.reflection++;
-    if (scattered.refraction.traced) rays_.refraction++;
-    rays_.cut_reflection += is_cut(scattered.reflection, path, context_.settings.reflection);
-    rays_.cut_refraction += is_cut(scattered.refraction, path, context_.settings.refraction);
+    const bool mirrors = scattered.refraction.mirrors;
+    if (scattered.refraction.traced) (mirrors ? rays_.reflection : rays_.refraction)++;
+    rays_.cut_reflection += is_cut(scattered.reflection, path);
+    (mirrors ? rays_.cut_reflection : rays_.cut_refraction) += is_cut(scattered.refraction, path);
     sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
     sum += follow(scattered.refraction, surface, path, hit.triangle, 1);
     sum += surface.optics.alpha * direct_light(surface, hit.triangle, path);
@@ -145,22 +155,29 @@ bool Shader::is_last(const Branch& branch, const Path& path) const {
     return path.level >= (branch.passes ? last : std::min(last, context_.settings.bounces + path.passed));
 }
 
-bool Shader::is_traced(const Branch& branch, const Path& path, bool effect) const {
-    return effect && !is_last(branch, path) && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+/// Is it bright enough, and its effect on?
+bool Shader::is_wanted(const Branch& branch, const Path& path) const {
+    const bool effect = branch.mirrors ? context_.settings.reflection : context_.settings.refraction;
+    return effect && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+}
+
+bool Shader::is_traced(const Branch& branch, const Path& path) const {
+    return is_wanted(branch, path) && !is_last(branch, path);
 }
 
 /// Would it be traced if it were not too far along the path? With no bounces at all nobody asked for it.
-bool Shader::is_cut(const Branch& branch, const Path& path, bool effect) const {
-    return effect && path.level > 0 && is_last(branch, path) && largest(branch.weight * path.weight) >= LEAST_WEIGHT;
+bool Shader::is_cut(const Branch& branch, const Path& path) const {
+    return path.level > 0 && is_wanted(branch, path) && is_last(branch, path);
 }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
-glm::dvec3 Shader::half_vector(const Surface& s, const glm::dvec3& view, double alpha, uint32_t seed) const {
-    if (context_.settings.spp <= 1 || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return s.normal;
-    const auto [t, b] = tangents(s.normal);
-    const glm::dvec3 local(glm::dot(view, t), glm::dot(view, b), std::max(GRAZING_COSINE, glm::dot(view, s.normal)));
-    const glm::dvec3 h = sample_ggx(glm::normalize(local), alpha, random_pair(seed, sample_, Purpose::microfacet));
-    return glm::normalize(t * h.x + b * h.y + s.normal * h.z);
+glm::dvec3 Shader::half_vector(const glm::dvec3& normal, const glm::dvec3& view, double alpha, uint32_t seed,
+                               Purpose purpose) const {
+    if (context_.settings.spp <= 1 || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return normal;
+    const auto [t, b] = tangents(normal);
+    const glm::dvec3 local(glm::dot(view, t), glm::dot(view, b), std::max(GRAZING_COSINE, glm::dot(view, normal)));
+    const glm::dvec3 h = sample_ggx(glm::normalize(local), alpha, random_pair(seed, sample_, purpose));
+    return glm::normalize(t * h.x + b * h.y + normal * h.z);
 }
 
 /// Both branches of a surface, and what it sends by itself (docs/frame.md section 4).
@@ -176,7 +193,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     const glm::dvec3 view = -path.direction;
     const bool transmits = m.transmits(), mirror = m.roughness < MIRROR_ROUGHNESS;
     const double alpha = m.roughness * m.roughness;
-    const glm::dvec3 h = half_vector(s, view, alpha, path.seed);
+    const glm::dvec3 h = half_vector(s.normal, view, alpha, path.seed, Purpose::microfacet);
     const double cosine = std::clamp(glm::dot(view, h), 0.0, 1.0);
     const glm::dvec3 dielectric = reflectance_at(meeting, s, cosine);
 
@@ -197,17 +214,11 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     const double turn = s.curvature * path.cone.width;
     reflection.cone = {path.cone.width, path.cone.spread + 2 * turn};
     reflection.sees_sun = mirror && path.sees_sun;
-    reflection.traced = is_traced(reflection, path, settings.reflection);
+    reflection.traced = is_traced(reflection, path);
     reflection.blur = settings.spp > 1 ? 0 : m.roughness;
 
     out.radiance = m.emissive;
-    const double part = transmits ? 1 : traced_part(m, settings.spp);
-    if (part < 1) {  // the untraced part of a wide lobe, at once
-        out.radiance +=
-            reflection.weight * (1 - part) * context_.surroundings.radiance(reflection.direction, m.roughness);
-        reflection.weight *= part;
-        reflection.traced = reflection.traced && part > 0;
-    }
+    if (!transmits) out.radiance += fade(reflection, m.roughness, m.metallic);
     const auto direction = !transmits ? std::nullopt
                            : m.thin   ? std::optional(path.direction)
                                       : refract_ray(path.direction, h, relative_index(meeting, s));
@@ -219,11 +230,58 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         refraction.cone = path.cone;
         if (!m.thin) refraction.cone.spread = (path.cone.spread + turn) / relative_index(meeting, s) - turn;
         refraction.sees_sun = mirror && path.sees_sun;
-        refraction.traced = is_traced(refraction, path, settings.refraction);
+        refraction.mirrors = false;
+        refraction.traced = is_traced(refraction, path);
         refraction.weight *= meeting.beside;
     }
+    if (m.clearcoat > 0) add_coat(s, path, meeting, out);
     if (m.alpha < 1) pass_beside(s, path, meeting, out);
     return out;
+}
+
+/// What the untraced part of a wide lobe sees, at once; the branch keeps the rest.
+glm::dvec3 Shader::fade(Branch& branch, double roughness, double metallic) const {
+    const double part = traced_part(roughness, metallic, context_.settings.spp);
+    if (part == 1) return glm::dvec3(0);
+    const glm::dvec3 seen = branch.weight * (1 - part) * context_.surroundings.radiance(branch.direction, roughness);
+    branch.weight *= part;
+    branch.traced = branch.traced && part > 0;
+    return seen;
+}
+
+/// A clear coat takes its share of the light and lets the rest through, both ways at once (KHR_materials_clearcoat).
+/// What it mirrors is the second branch of an opaque surface; glass and blended surfaces mirror it with their own.
+void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting, Scattered& out) const {
+    const Optics& m = s.optics;
+    const glm::dvec3 view = -path.direction;
+    const double share = context_.albedos.coat(s, glm::dot(view, s.coat_normal));
+    out.radiance *= 1 - share;
+    out.reflection.weight *= 1 - share;
+    out.refraction.weight *= 1 - share;
+    if (m.transmits() || m.alpha < 1) {
+        out.reflection.weight += share;
+        out.reflection.traced = is_traced(out.reflection, path);
+        return;
+    }
+    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS, sampled = !mirror && context_.settings.spp > 1;
+    const double alpha = m.coat_roughness * m.coat_roughness;
+    const glm::dvec3 h = half_vector(s.coat_normal, view, alpha, path.seed, Purpose::coat);
+    const glm::dvec3 reflected = path.direction - 2 * glm::dot(path.direction, h) * h;
+    Branch coat;
+    coat.weight = glm::dvec3(share);
+    if (sampled) {
+        const double above = glm::dot(reflected, s.coat_normal);
+        coat.weight = m.clearcoat * (above > 0 ? ggx_masking(above, alpha) : 0) *
+                      fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, std::clamp(glm::dot(view, h), 0.0, 1.0));
+    }
+    coat.direction = above_surface(reflected, s.geometric);
+    coat.media = meeting.before;
+    coat.cone = {path.cone.width, path.cone.spread + 2 * s.curvature * path.cone.width};
+    coat.sees_sun = mirror && path.sees_sun;
+    coat.traced = is_traced(coat, path);
+    out.radiance += fade(coat, m.coat_roughness, 0);
+    coat.blur = context_.settings.spp > 1 ? 0 : m.coat_roughness;
+    out.refraction = coat;
 }
 
 /// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin
@@ -239,7 +297,8 @@ void Shader::pass_beside(const Surface& s, const Path& path, const Meeting& meet
     on.cone = path.cone;
     on.passes = true;
     on.sees_sun = path.sees_sun;
-    on.traced = is_traced(on, path, context_.settings.refraction);
+    on.mirrors = false;
+    on.traced = is_traced(on, path);
     out.refraction = on;
 }
 
@@ -252,7 +311,7 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
     for (const Light& light : context_.lights) {
         const auto [irradiance, direction] = incidence(light, s.position);
         if (irradiance == glm::dvec3(0)) continue;
-        const glm::dvec3 reflected = irradiance * reflectance(s, m, view, direction);
+        const glm::dvec3 reflected = irradiance * reflectance(s, view, direction);
         if (reflected == glm::dvec3(0)) continue;
         if (!context_.settings.shadow) {
             sum += reflected;
@@ -275,6 +334,7 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     if (diffuse == glm::dvec3(0)) return diffuse;
     // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
+    diffuse *= 1 - context_.albedos.coat(s, -glm::dot(path.direction, s.coat_normal));
     diffuse *= 1 - largest(m.roughness < MIRROR_ROUGHNESS ? m.face_reflectance(cosine, m.leaves(s.front))
                                                           : context_.albedos.at(s, cosine).dielectric);
     const glm::dvec3 light = m.occlusion * diffuse * context_.surroundings.irradiance(s.normal);

@@ -6,6 +6,7 @@
 #include "reference/albedos.h"
 #include "reference/bvh.h"
 #include "reference/media.h"
+#include "reference/optics.h"
 #include "reference/surface.h"
 #include "scene/picture.h"
 
@@ -67,6 +68,7 @@ class Shader {
         Media media;
         Cone cone;
         bool passes = false;  ///< straight on, through a blended surface
+        bool mirrors = true;  ///< it is a reflection
         bool sees_sun = false;
         bool traced = false;
         double blur = 0;  ///< roughness for the environment, if not traced
@@ -78,11 +80,16 @@ class Shader {
 
     MediaWalk walk() const { return {context_.bvh, context_.surfaces, context_.media}; }
     Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
-    glm::dvec3 half_vector(const Surface& surface, const glm::dvec3& view, double alpha, uint32_t seed) const;
+    glm::dvec3 half_vector(const glm::dvec3& normal, const glm::dvec3& view, double alpha, uint32_t seed,
+                           optics::Purpose purpose) const;
+    glm::dvec3 fade(Branch& branch, double roughness, double metallic) const;
+    void add_coat(const Surface& surface, const Path& path, const Meeting& meeting, Scattered& scattered) const;
+    glm::dvec3 reflectance(const Surface& surface, const glm::dvec3& view, const glm::dvec3& to_light) const;
     void pass_beside(const Surface& surface, const Path& path, const Meeting& meeting, Scattered& scattered) const;
     bool is_last(const Branch& branch, const Path& path) const;
-    bool is_traced(const Branch& branch, const Path& path, bool effect) const;
-    bool is_cut(const Branch& branch, const Path& path, bool effect) const;
+    bool is_wanted(const Branch& branch, const Path& path) const;
+    bool is_traced(const Branch& branch, const Path& path) const;
+    bool is_cut(const Branch& branch, const Path& path) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
 

@@ -81,8 +81,13 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     const double slope = std::max(std::abs(glm::dot(s.geometric, direction)), LEAST_COSINE);
     if (size > 0) place.seen = 2 * width * width / (slope * size);
     const double side = glm::dot(normal, s.geometric) < -NORMAL_IN_PLANE ? -1 : 1;
-    s.normal =
-        optics::visible_normal(side * bent(s.material, place, interpolated).value_or(normal), s.geometric, -direction);
+    const Material& m = scene_.materials[s.material];
+    const auto seen = [&](const MaterialTexture& use, double scale) {
+        const glm::dvec3 turned = bent(use, scale, place, interpolated).value_or(normal);
+        return optics::visible_normal(side * turned, s.geometric, -direction);
+    };
+    s.normal = seen(m.normal_texture, m.normal_scale);
+    s.coat_normal = seen(m.coat_normal_texture, m.coat_normal_scale);
     double turn = 0, way = 0;
     for (int i = 0; i < 3; i++) {
         const glm::dvec3 edge = p[(i + 1) % 3] - p[i];
@@ -161,6 +166,8 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
     o.metallic *= number(m.metallic_texture, place);
     o.roughness *= number(m.roughness_texture, place);
     o.transmission *= number(m.transmission_texture, place);
+    o.clearcoat = double(m.clearcoat) * number(m.clearcoat_texture, place);
+    o.coat_roughness = double(m.coat_roughness) * number(m.coat_roughness_texture, place);
     if (m.specular_texture || m.specular_color_texture) {
         o.f90 *= number(m.specular_texture, place);
         const double normal = m.ior == 0 ? 1 : std::pow((o.ior - 1) / (o.ior + 1), 2);
@@ -173,15 +180,15 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
 
 /// glTF 2.0, section 3.9.3: red, green and blue are the normal's parts along the tangent, the bitangent and the normal,
 /// which are interpolated and, as MikkTSpace has it, not made unit before.
-std::optional<glm::dvec3> Surfaces::bent(uint32_t material, const Place& place, const glm::dvec3& normal) const {
-    const Material& m = scene_.materials[material];
-    if (!m.normal_texture || geometry_.tangents.empty()) return {};
+std::optional<glm::dvec3> Surfaces::bent(const MaterialTexture& use, double scale, const Place& place,
+                                         const glm::dvec3& normal) const {
+    if (!use || geometry_.tangents.empty()) return {};
     const glm::dvec4 along = place.interpolate(geometry_.tangents);
     const glm::dvec3 tangent(along);
     if (along.w == 0 || glm::dot(tangent, tangent) == 0) return {};
     const glm::dvec3 bitangent = (along.w < 0 ? -1.0 : 1.0) * glm::cross(normal, tangent);
-    const glm::dvec3 texel(data(m.normal_texture, place));
-    const glm::dvec3 parts = (texel * 2.0 - 1.0) * glm::dvec3(m.normal_scale, m.normal_scale, 1);
+    const glm::dvec3 texel(data(use, place));
+    const glm::dvec3 parts = (texel * 2.0 - 1.0) * glm::dvec3(scale, scale, 1);
     const glm::dvec3 sum = tangent * parts.x + bitangent * parts.y + normal * parts.z;
     if (glm::dot(sum, sum) == 0) return {};
     return glm::normalize(sum);

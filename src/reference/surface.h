@@ -24,6 +24,7 @@ struct Optics {
     double f90 = 1;
     double occlusion = 1;  ///< share of the sky's diffuse light that arrives
     double alpha = 1;      ///< share of the surface that is there
+    double clearcoat = 0, coat_roughness = 0;
     bool thin = true, unlit = false;
 
     Optics() = default;
@@ -42,6 +43,7 @@ struct Surface {
     glm::dvec3 position;
     glm::dvec3 geometric;     ///< unit normal of the triangle, on the ray's side
     glm::dvec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
+    glm::dvec3 coat_normal;   ///< of a clear coat
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
     glm::dvec3 base_color;
     double extent;  ///< the largest coordinate of the triangle
@@ -97,8 +99,9 @@ class Surfaces {
     double number(const MaterialTexture& use, const Place& place) const;
     glm::dvec3 color(const MaterialTexture& use, const Place& place) const;
     Optics evaluate(uint32_t material, const Place& place) const;
-    /// The interpolated normal as the material's normal texture bends it, unit; nothing where none does.
-    std::optional<glm::dvec3> bent(uint32_t material, const Place& place, const glm::dvec3& normal) const;
+    /// The interpolated normal as a normal texture bends it, unit; nothing where none does.
+    std::optional<glm::dvec3> bent(const MaterialTexture& use, double scale, const Place& place,
+                                   const glm::dvec3& normal) const;
     const Scene& scene_;
     const Geometry& geometry_;
     std::vector<Optics> optics_;

@@ -42,6 +42,9 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.transmission = material.transmission;
     m.normal_scale = material.normal_scale;
     m.occlusion_strength = material.occlusion_strength;
+    m.clearcoat = material.clearcoat;
+    m.coat_roughness = material.coat_roughness;
+    m.coat_normal_scale = material.coat_normal_scale;
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
               (colored ? MATERIAL_COLORED : 0u) | (material.blended ? MATERIAL_BLENDED : 0u) |
               (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
@@ -190,10 +193,11 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             m.channels |= use.channel << 2 * k;
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;
-            if (k != TEXTURE_NORMAL) m.flags |= MATERIAL_TEXTURED;
+            if (k != TEXTURE_NORMAL && k != TEXTURE_COAT_NORMAL) m.flags |= MATERIAL_TEXTURED;
         }
         if (used[i] && m.flags & MATERIAL_SCHLICK) out.kinds |= MATERIALS_SPECIFIED;
         if (used[i] && material.blended) out.kinds |= MATERIALS_BLENDED;
+        if (used[i] && material.clearcoat > 0) out.kinds |= MATERIALS_COATED;
         materials.push_back(m);
     }
     if (std::ranges::any_of(textures.table, is_filtered)) out.kinds |= MATERIALS_FILTERED;

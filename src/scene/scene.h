@@ -63,13 +63,18 @@ struct Material {
     MaterialTexture specular_color_texture;                                                        ///< sRGB
     MaterialTexture normal_texture;     ///< tangent space, red along the tangent, green along the bitangent
     MaterialTexture occlusion_texture;  ///< one channel; 0: no light of the sky arrives
-    float normal_scale = 1;             ///< of the normal texture's red and green
-    float occlusion_strength = 1;       ///< [0, 1]
-    float metallic = 0;                 ///< [0, 1]
-    float roughness = 1;                ///< perceptual, [0, 1]; GGX alpha is its square
+    MaterialTexture clearcoat_texture, coat_roughness_texture;  ///< one channel each
+    MaterialTexture coat_normal_texture;  ///< as normal_texture, for the coat; none: the coat is smooth
+    float normal_scale = 1;               ///< of the normal texture's red and green
+    float occlusion_strength = 1;         ///< [0, 1]
+    float metallic = 0;                   ///< [0, 1]
+    float roughness = 1;                  ///< perceptual, [0, 1]; GGX alpha is its square
     glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
     float transmission = 0;          ///< share of the light that is not reflected and passes through, [0, 1]
     float ior = 1.5f;                ///< index of refraction, ≥ 1; 0: infinite, all light is reflected
+    float clearcoat = 0;             ///< share of the surface that has a coat, [0, 1] (KHR_materials_clearcoat)
+    float coat_roughness = 0;        ///< perceptual, [0, 1]
+    float coat_normal_scale = 1;     ///< as normal_scale
     float specular = 1;              ///< share of the reflection of what is no metal, [0, 1] (KHR_materials_specular)
     glm::vec3 specular_color{1};     ///< its colour at normal incidence, ≥ 0
     float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
@@ -80,11 +85,12 @@ struct Material {
 };
 
 /// All textures of a material, in the order of the shaders' TEXTURE_* (common/material.h).
-inline constexpr std::array<MaterialTexture Material::*, 10> material_textures = {
-    &Material::base_color_texture,    &Material::emissive_texture,     &Material::metallic_texture,
-    &Material::roughness_texture,     &Material::transmission_texture, &Material::thickness_texture,
-    &Material::normal_texture,        &Material::occlusion_texture,    &Material::specular_texture,
-    &Material::specular_color_texture};
+inline constexpr std::array<MaterialTexture Material::*, 13> material_textures = {
+    &Material::base_color_texture,     &Material::emissive_texture,     &Material::metallic_texture,
+    &Material::roughness_texture,      &Material::transmission_texture, &Material::thickness_texture,
+    &Material::normal_texture,         &Material::occlusion_texture,    &Material::specular_texture,
+    &Material::specular_color_texture, &Material::clearcoat_texture,    &Material::coat_roughness_texture,
+    &Material::coat_normal_texture};
 
 /// Does a use read its texture's red, green and blue as an sRGB-encoded colour?
 constexpr bool is_color(MaterialTexture Material::*use) {

@@ -253,7 +253,8 @@ void make_tangents(Primitive& p, const std::vector<glm::vec2>& coordinates) {
 void complete_tangents(Scene& scene) {
     for (Mesh& mesh : scene.meshes)
         for (Primitive& p : mesh.primitives) {
-            const MaterialTexture& normal = scene.materials[p.material].normal_texture;
+            const Material& m = scene.materials[p.material];
+            const MaterialTexture& normal = m.normal_texture ? m.normal_texture : m.coat_normal_texture;
             if (!normal || !p.tangents.empty() || p.triangles.empty()) continue;
             std::vector<glm::vec2> coordinates;
             if (normal.uv_set <= p.more_uvs.size())

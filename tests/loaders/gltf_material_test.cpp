@@ -79,6 +79,31 @@ TEST(GltfMaterial, SpecularAndGlossiness) {
     expect_near(scene.materials.at(2).specular_color, {1, 1, 1});
 }
 
+TEST(GltfMaterial, ClearCoat) {
+    const TempFolder folder;
+    json gltf = square();
+    gltf["extensionsUsed"] = {"KHR_materials_clearcoat"};
+    write_png(folder.path() / "a.png", Image8{1, 1, {0xff8080ffu}}, true);
+    gltf["images"] = {{{"uri", "a.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = json::parse(R"([{"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 0.75,
+        "clearcoatRoughnessFactor": 0.5, "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0},
+        "clearcoatNormalTexture": {"index": 0, "scale": 0.25}}}},
+        {"extensions": {"KHR_materials_clearcoat": {"clearcoatRoughnessFactor": 2}}}])");
+    primitive(gltf)["material"] = 0;
+    const Scene scene = load(folder, gltf);
+    const Material& m = scene.materials.at(0);
+    EXPECT_FLOAT_EQ(m.clearcoat, 0.75f);
+    EXPECT_FLOAT_EQ(m.coat_roughness, 0.5f);
+    EXPECT_FLOAT_EQ(m.coat_normal_scale, 0.25f);
+    EXPECT_EQ(m.clearcoat_texture.channel, 0u);
+    EXPECT_EQ(m.coat_roughness_texture.channel, 1u);
+    ASSERT_TRUE(m.clearcoat_texture && m.coat_roughness_texture && m.coat_normal_texture);
+    EXPECT_EQ(only_primitive(scene).tangents.size(), 4u);  // made for the coat alone
+    EXPECT_EQ(scene.materials.at(1).clearcoat, 0);
+    EXPECT_TRUE(has_note(scene, "VALUE_NOT_IN_RANGE"));
+}
+
 TEST(GltfMaterial, SamplersSayHowTexturesAreFiltered) {
     const TempFolder folder;
     using Mipmaps = Texture::Mipmaps;
@@ -149,8 +174,8 @@ TEST(GltfMaterial, Materials) {
         R"([{"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.6},
         "emissiveFactor": [1, 0.5, 0], "alphaMode": "BLEND", "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.7},
         "KHR_materials_ior": {"ior": 1.4}, "KHR_materials_volume": {"thicknessFactor": 2, "attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]},
-        "KHR_materials_emissive_strength": {"emissiveStrength": 10}, "KHR_materials_unlit": {}, "KHR_materials_clearcoat": {}}}])");
-    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_clearcoat"};
+        "KHR_materials_emissive_strength": {"emissiveStrength": 10}, "KHR_materials_unlit": {}, "KHR_materials_sheen": {}}}])");
+    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_sheen"};
     primitive(gltf)["material"] = 0;
     const Scene scene = load(folder, gltf);
     const Material& m = scene.materials.at(0);
@@ -165,7 +190,7 @@ TEST(GltfMaterial, Materials) {
     EXPECT_FLOAT_EQ(m.attenuation_distance, 3);
     expect_near(m.attenuation_color, {0.5f, 0.6f, 0.7f});
     EXPECT_TRUE(m.unlit);
-    EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_clearcoat"});
+    EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_sheen"});
     EXPECT_EQ(scene.extensions_used.size(), 2u);
     EXPECT_TRUE(has_note(scene, "BLEND"));  // it bounds a volume
     EXPECT_FALSE(m.blended);
