@@ -74,20 +74,6 @@ struct TextureFactors {
     float metallic, roughness, transmission, thickness, occlusion, specular, clearcoat, coat_roughness;
 };
 
-/// Several uses that follow each other are often one image.
-struct LastTexture {
-    int index;
-    vec4 value;
-};
-
-/// The single number that a use reads; 1 without a texture.
-float textureNumber(uint material, int use, TexturePlace place, inout LastTexture last) {
-    const int index = materials[material].textures[use];
-    if (index < 0) return 1.0;
-    if (index != last.index) last = LastTexture(index, textureAt(index, place));
-    return last.value[materials[material].channels >> uint(2 * use) & 3u];
-}
-
 /// With the vertices' own colours; the fourth: alpha of what is blended, else 1.
 vec4 baseColor(uint material, TexturePlace place) {
     vec4 color = vec4(materials[material].base_color, materials[material].alpha);
@@ -103,20 +89,24 @@ vec4 baseColor(uint material, TexturePlace place) {
 TextureFactors textureFactors(uint material, TexturePlace place) {
     TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
     if (!textured || (materials[material].flags & MATERIAL_TEXTURED) == 0u) return f;
-    const int emission = materials[material].textures[TEXTURE_EMISSIVE];
-    if (emission >= 0) f.emissive = textureAt(emission, place).rgb;
-    const int specular = materials[material].textures[TEXTURE_SPECULAR_COLOR];
-    if (specular >= 0) f.specular_color = textureAt(specular, place).rgb;
-    LastTexture last = LastTexture(-1, vec4(1));
-    f.metallic = textureNumber(material, TEXTURE_METALLIC, place, last);
-    f.roughness = textureNumber(material, TEXTURE_ROUGHNESS, place, last);
-    f.occlusion = textureNumber(material, TEXTURE_OCCLUSION, place, last);
-    f.transmission = textureNumber(material, TEXTURE_TRANSMISSION, place, last);
-    f.thickness = textureNumber(material, TEXTURE_THICKNESS, place, last);
-    f.specular = textureNumber(material, TEXTURE_SPECULAR, place, last);
-    if (coated) {
-        f.clearcoat = textureNumber(material, TEXTURE_CLEARCOAT, place, last);
-        f.coat_roughness = textureNumber(material, TEXTURE_COAT_ROUGHNESS, place, last);
+    int last = -1;  // several uses that follow each other are often one image
+    vec4 value = vec4(1);
+    for (int use = TEXTURE_EMISSIVE; use < TEXTURE_USES; use++) {
+        const int index = materials[material].textures[use];
+        if (index < 0 || use == TEXTURE_NORMAL || use == TEXTURE_COAT_NORMAL) continue;
+        if (index != last) value = textureAt(index, place);
+        last = index;
+        const float number = value[materials[material].channels >> uint(2 * use) & 3u];
+        if (use == TEXTURE_EMISSIVE) f.emissive = value.rgb;
+        if (use == TEXTURE_METALLIC) f.metallic = number;
+        if (use == TEXTURE_ROUGHNESS) f.roughness = number;
+        if (use == TEXTURE_TRANSMISSION) f.transmission = number;
+        if (use == TEXTURE_THICKNESS) f.thickness = number;
+        if (use == TEXTURE_OCCLUSION) f.occlusion = number;
+        if (use == TEXTURE_SPECULAR) f.specular = number;
+        if (use == TEXTURE_SPECULAR_COLOR) f.specular_color = value.rgb;
+        if (use == TEXTURE_CLEARCOAT) f.clearcoat = number;
+        if (use == TEXTURE_COAT_ROUGHNESS) f.coat_roughness = number;
     }
     return f;
 }

@@ -31,42 +31,44 @@ vec4 fetchTexel(GpuTexture info, int x, int y) {
     return (info.flags & USE_DATA) != 0u ? encoded : vec4(srgbToLinear(encoded.rgb), encoded.a);
 }
 
-/// One level, bilinear or the nearest texel.
+/// One level, bilinear or the nearest texel. Here and below loops stand for what could be written out: each place that is called is
+/// code that compilers copy into every use of a texture.
 vec4 sampleLevel(GpuTexture info, vec2 uv, bool nearest) {
     // Whole repeats are dropped first: large coordinates would lose the fraction's bits.
     const vec2 wrapped = uv - 2.0 * floor(uv * 0.5);
     const bool clamped_u = (info.flags & 3u) == 2u, clamped_v = (info.flags >> 2u & 3u) == 2u;
     const vec2 p = vec2(clamped_u ? clamp(uv.x, 0.0, 1.0) : wrapped.x, clamped_v ? clamp(uv.y, 0.0, 1.0) : wrapped.y) * vec2(info.width, info.height);
-    if (nearest) return fetchTexel(info, int(floor(p.x)), int(floor(p.y)));
-    const vec2 q = p - 0.5, f = fract(q);
-    const ivec2 i = ivec2(floor(q));
-    const vec4 top = mix(fetchTexel(info, i.x, i.y), fetchTexel(info, i.x + 1, i.y), f.x);
-    const vec4 bottom = mix(fetchTexel(info, i.x, i.y + 1), fetchTexel(info, i.x + 1, i.y + 1), f.x);
-    return mix(top, bottom, f.y);
+    const vec2 q = nearest ? floor(p) : p - 0.5, f = fract(q);
+    const ivec2 first = ivec2(floor(q));
+    vec4 sum = vec4(0);
+    for (int i = 0; i < (nearest ? 1 : 4); i++) {
+        const ivec2 corner = ivec2(i & 1, i >> 1);
+        const vec2 share = mix(1.0 - f, f, bvec2(corner));
+        sum += share.x * share.y * fetchTexel(info, first.x + corner.x, first.y + corner.y);
+    }
+    return sum;
 }
 
 /// Level `number` as a texture of its own.
 GpuTexture textureLevel(GpuTexture info, uint number) {
-    if (number == 0u) return info;
-    info.offset = info.smaller;
-    for (uint i = 1u;; i++) {
+    for (uint i = 1u; i <= number; i++) {
+        info.offset = i == 1u ? info.smaller : info.offset + info.width * info.height * ((info.flags & USE_DEEP) != 0u ? 2u : 1u);
         info.width = max(info.width >> 1u, 1u);
         info.height = max(info.height >> 1u, 1u);
-        if (i == number) return info;
-        info.offset += info.width * info.height * ((info.flags & USE_DEEP) != 0u ? 2u : 1u);
     }
+    return info;
 }
 
 /// Filtered for a footprint whose width in texels has the binary logarithm `lod`; at most 0: magnified.
 vec4 sampleTexture(GpuTexture info, vec2 uv, float lod) {
-    if (lod <= 0.0) return sampleLevel(info, uv, (info.flags & USE_NEAREST) != 0u);
-    lod = (info.flags & USE_LEVELS) != 0u ? min(lod, float(findMSB(max(info.width, info.height)))) : 0.0;
+    const bool nearest = (info.flags & (lod > 0.0 ? USE_MIN_NEAREST : USE_NEAREST)) != 0u;
+    lod = lod > 0.0 && (info.flags & USE_LEVELS) != 0u ? min(lod, float(findMSB(max(info.width, info.height)))) : 0.0;
     if ((info.flags & USE_BETWEEN) == 0u) lod = ceil(lod - 0.5);
-    const bool nearest = (info.flags & USE_MIN_NEAREST) != 0u;
-    const uint first = uint(lod);
-    const vec4 value = sampleLevel(textureLevel(info, first), uv, nearest);
-    const float part = lod - float(first);
-    return part > 0.0 ? mix(value, sampleLevel(textureLevel(info, first + 1u), uv, nearest), part) : value;
+    const float part = fract(lod);
+    vec4 sum = vec4(0);
+    for (uint k = 0u; k < (part > 0.0 ? 2u : 1u); k++)
+        sum += (k == 0u ? 1.0 - part : part) * sampleLevel(textureLevel(info, uint(lod) + k), uv, nearest);
+    return sum;
 }
 
 /// Where the texture's own transform takes coordinates.

@@ -130,13 +130,16 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
         known = false;
         const bool wall = mediaIsWall(hit);
         if (wall) hit.uv = mediaWeights(ray, hit);
+        Surface here;
+        if (wall || (group.count > 0u && hit.triangle != PEELRAY_MISS))
+            here = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction, 0.0);
         if (group.count == 0u) {
             m.hit = hit;
             m.beyond = hit.t;
             m.last = uvec2(hit.instance, hit.triangle);
             m.wall = wall;
             if (!wall) return m;
-            m.surface = surfaceAt(hit.instance, hit.triangle, hit.uv, ray.direction, 0.0);
+            m.surface = here;
             mediaAdd(group, hit, m.surface, m.at.before);
             near = mediaNear(ray, hit, m.surface);
             looked = 0u;
@@ -144,14 +147,13 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
             continue;
         }
         if (hit.triangle != PEELRAY_MISS) {
-            const Surface beside = surfaceAt(hit.instance, hit.triangle, wall ? hit.uv : vec2(0), ray.direction, 0.0);
-            const bool parallel = abs(dot(beside.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
+            const bool parallel = abs(dot(here.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
             if (!wall && parallel && !mayTransmit(hit.triangle)) {
                 m.hit = hit;
                 m.wall = false;
                 return m;
             }
-            if (wall && parallel && mediaAdd(group, hit, beside, m.at.before)) {
+            if (wall && parallel && mediaAdd(group, hit, here, m.at.before)) {
                 m.beyond = max(m.beyond, hit.t);
                 m.last = uvec2(hit.instance, hit.triangle);
                 if (!MEDIA_FORGETS) near.tmin = hit.t;
