@@ -32,7 +32,7 @@ struct SoftBox {
         const float x = std::abs(glm::dot(d, side)) / ahead;
         const float y = std::abs(glm::dot(d, glm::cross(forward, side))) / ahead;
         // Edges of several texels, and a little less light towards them, as of a lamp behind cloth.
-        constexpr float edge = 0.07f;
+        constexpr float edge = 0.1f;
         const float fall = 1 - 0.25f * (x * x / (half.x * half.x) + y * y / (half.y * half.y)) / 2;
         return radiance * fall * (1 - smooth(half.x - edge, half.x + edge, x)) *
                (1 - smooth(half.y - edge, half.y + edge, y));
