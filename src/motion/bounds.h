@@ -2,6 +2,7 @@
 // lies.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>

@@ -1,6 +1,7 @@
 // A camera from which points fill the picture.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>

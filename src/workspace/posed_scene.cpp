@@ -1,5 +1,6 @@
 #include "workspace/posed_scene.h"
 
+#include <span>
 #include <utility>
 
 #include "base/error.h"
