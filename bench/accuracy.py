@@ -15,25 +15,25 @@ import tempfile
 
 from scenes import chosen, find
 
-MIRROR = ["--material", "mirror", "--floor"]
+MIRROR = ["--material", "mirror", "--floor", "--sky"]
 SCENES = [  # name, file or built-in, options
     ("teapots", "builtin:teapots", []),
     ("glass", "builtin:glass", []),
     ("tree", "builtin:tree", []),
     ("blob 100K", "builtin:blob:100000", []),
     ("bunny, mirror", "meshes/bunny_7k.off", MIRROR),
-    ("car", "meshes/car2.glb", ["--floor"]),
+    ("car", "meshes/car2.glb", ["--floor", "--sky"]),
     ("dragon, mirror", "meshes/chinesedragon.gltf", MIRROR),
-    ("dragon, as it is", "meshes/chinesedragon.gltf", []),
+    ("dragon, as it is", "meshes/chinesedragon.gltf", ["--sky"]),
     ("igea, mirror", "meshes/igea.ply", MIRROR),
     ("nefertiti, mirror", "meshes/nefertiti.obj", MIRROR),
-    ("nefertiti, glass", "meshes/nefertiti.obj", ["--material", "glass", "--floor"]),
-    ("TransmissionTest", "gltf/TransmissionTest.glb", []),
-    ("ToyCar", "gltf/ToyCar/ToyCar.gltf", []),
+    ("nefertiti, glass", "meshes/nefertiti.obj", ["--material", "glass", "--floor", "--sky"]),
+    ("TransmissionTest", "gltf/TransmissionTest.glb", ["--sky"]),
+    ("ToyCar", "gltf/ToyCar/ToyCar.gltf", ["--sky"]),
 ]
-WALK = ["--animation", "all", "--floor"]
+WALK = ["--animation", "all", "--floor", "--sky"]
 MOVING = [  # name, file or built-in, options, seconds
-    ("tiny, Walk", "skinned/tiny.glb", ["--animation", "Walk", "--floor"], [0, 0.4, 1.7]),
+    ("tiny, Walk", "skinned/tiny.glb", ["--animation", "Walk", "--floor", "--sky"], [0, 0.4, 1.7]),
     ("CesiumMan", "skinned/CesiumMan.glb", WALK, [0.7, 1.5]),
     ("RiggedFigure", "skinned/RiggedFigure.glb", WALK, [0.2, 1]),
     ("AnimatedMorphCube", "skinned/AnimatedMorphCube.glb", WALK, [1.3, 3.1]),

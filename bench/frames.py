@@ -17,10 +17,10 @@ import tempfile
 from scenes import chosen
 
 SCENES = [  # name, file or built-in, options
-    ("bunny 7K", "bunny_7k.off", ["--material", "mirror", "--floor"]),
-    ("car 47K", "car2.glb", ["--floor"]),
-    ("dragon 101K", "chinesedragon.gltf", ["--material", "mirror", "--floor"]),
-    ("igea 269K", "igea.ply", ["--material", "mirror", "--floor"]),
+    ("bunny 7K", "bunny_7k.off", ["--material", "mirror", "--floor", "--sky"]),
+    ("car 47K", "car2.glb", ["--floor", "--sky"]),
+    ("dragon 101K", "chinesedragon.gltf", ["--material", "mirror", "--floor", "--sky"]),
+    ("igea 269K", "igea.ply", ["--material", "mirror", "--floor", "--sky"]),
     ("teapots", "builtin:teapots", []),
     ("glass", "builtin:glass", []),
     ("tree", "builtin:tree", []),

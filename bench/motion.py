@@ -20,7 +20,7 @@ import tempfile
 from scenes import chosen
 
 SCENES = [  # name, file or built-in, options, seconds
-    ("tiny, Walk", "tiny.glb", ["--animation", "Walk", "--floor"], 1.0),
+    ("tiny, Walk", "tiny.glb", ["--animation", "Walk", "--floor", "--sky"], 1.0),
     ("walker", "builtin:walker", [], 7.6),
     ("waves 1M", "builtin:waves:1000000", [], 2.0),
     ("particles 3,000", "builtin:particles", [], 2.0),

@@ -133,7 +133,7 @@ BenchScene::BenchScene(const PaperScene& scene, const BenchSettings& a, const st
     p.double_sided = true;
     p.tracing.block = a.block;
     p.tracing.routing = a.routing;
-    p.floor = file.has_value();
+    p.floor = p.sky = file.has_value();
     if (file) p.material = scene.material;
     p.animation = file ? scene.animation : scene.stand_in_animation;
     if (!p.animation.empty()) p.time = 0;

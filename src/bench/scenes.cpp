@@ -64,7 +64,7 @@ BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings
         choice.stands_in = !file;
         choice.shown = file ? file->filename().string() : scene->stand_in;
         p.scene = file ? file->string() : scene->stand_in;
-        p.floor = file.has_value();
+        p.floor = p.sky = file.has_value();
         if (file) p.material = scene->material;
         p.animation = file ? scene->animation : scene->stand_in_animation;
         if (!p.animation.empty()) p.time = 0.4;

@@ -21,7 +21,10 @@ Scene make_particles(uint64_t count);
 /// Collects a scene: one node with one mesh of one primitive per object.
 class SceneBuilder {
   public:
-    explicit SceneBuilder(const char* name) { scene_.name = name; }
+    explicit SceneBuilder(const char* name) {
+        scene_.name = name;
+        scene_.outdoors = true;
+    }
 
     uint32_t material(Material material);
     /// Returns the index of the node.

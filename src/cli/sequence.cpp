@@ -45,6 +45,10 @@ Sequence plan_sequence(const RenderArguments& a) {
     if (!s.turntable && a.time)
         fail("--frames show many moments and --time one: leave one of them out (a --turntable can stand at --time)");
     sequence.runs = !a.time && (!s.turntable || s.fps || !a.animation.empty());
+    if (sequence.runs && a.frame_moment)
+        fail(
+            "--frame-moment would frame each of many moments anew: leave it out, or show one moment (--time, also with "
+            "--turntable)");
     if (sequence.runs && (sequence.frames.end - 1) / sequence.fps > 1e6)
         fail("frame {} at {} frames per second is beyond 1000000 seconds: choose other --frames or --fps",
              sequence.frames.end - 1, sequence.fps);

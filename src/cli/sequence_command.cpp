@@ -31,6 +31,7 @@ double seconds_since(Clock::time_point start) {
 RenderArguments at_first_frame(const RenderArguments& a, const Sequence& sequence) {
     RenderArguments first = a;
     if (sequence.runs) first.time = sequence.shot(sequence.numbers().front()).time;
+    first.goes_round = sequence.turntable > 0;
     return first;
 }
 

@@ -5,6 +5,7 @@
 
 #include "motion/animation.h"
 #include "motion/motion.h"
+#include "path/shading_numbers.h"
 #include "scene/deform.h"
 
 namespace peelray {
@@ -106,49 +107,122 @@ std::vector<glm::vec3> positions_of(const Scene& scene, const Moment& moment, si
     return out;
 }
 
+/// Can the alpha test leave anything of a primitive's surface?
+bool leaves_something(const Scene& scene, const Primitive& primitive) {
+    const Material& material = scene.materials[primitive.material];
+    const double least = double(material.alpha_cutoff) - ALPHA_ROUNDING;
+    if (material.alpha_cutoff <= 0) return true;
+    float corners = primitive.colors.empty() ? 1 : 0;
+    for (const glm::vec4& color : primitive.colors) corners = std::max(corners, color.w);
+    const double most = double(material.alpha) * double(corners);
+    if (most < least || !material.base_color_texture) return most >= least;
+    const Texture& texture = scene.textures[size_t(material.base_color_texture.texture)];
+    const auto is_enough = [&](double alpha) { return most * alpha >= least; };
+    return std::ranges::any_of(texture.texels, [&](uint32_t texel) { return is_enough((texel >> 24) / 255.0); }) ||
+           std::ranges::any_of(texture.deep_texels, [&](uint64_t texel) { return is_enough((texel >> 48) / 65535.0); });
+}
+
+/// The primitives that count, mesh by mesh.
+std::vector<std::vector<const Primitive*>> counted_primitives(const Scene& scene, Counted counted) {
+    std::vector<std::vector<const Primitive*>> meshes;
+    for (const Mesh& mesh : scene.meshes) {
+        meshes.emplace_back();
+        for (const Primitive& primitive : mesh.primitives)
+            if (counted == Counted::all || leaves_something(scene, primitive)) meshes.back().push_back(&primitive);
+    }
+    return meshes;
+}
+
+/// Positions beyond the range of floats are refused when that moment is shown.
+void visit_finite(std::vector<glm::vec3> positions, const PointVisitor& visit) {
+    std::erase_if(positions, [](const glm::vec3& p) { return !is_finite(p); });
+    visit(positions);
+}
+
+void visit_used(const Scene& scene, const Moment& moment, size_t n, const Primitive& primitive,
+                const PointVisitor& visit) {
+    const std::vector<glm::vec3> positions = positions_of(scene, moment, n, primitive);
+    std::vector<glm::vec3> used;
+    used.reserve(positions.size());
+    for_each_vertex(primitive, [&](size_t i) { used.push_back(positions[i]); });
+    visit_finite(std::move(used), visit);
+}
+
+/// What the nodes of a scene reach in an animation, moment by moment.
+class Reach {
+  public:
+    Reach(const Scene& scene, Counted counted, size_t moments)
+        : scene_(scene),
+          rest_(at_rest(scene)),
+          primitives_(counted_primitives(scene, counted)),
+          has_rested_(scene.nodes.size(), false) {
+        const size_t stride = 1 + vertices_of_nodes(scene) * moments / most_places;
+        for (const auto& mesh : primitives_) {
+            thinned_.emplace_back();
+            for (const Primitive* primitive : mesh) thinned_.back().push_back(thinned(*primitive, stride));
+        }
+    }
+
+    void visit_at(const Moment& moment, const PointVisitor& visit) {
+        for (size_t n = 0; n < scene_.nodes.size(); n++)
+            if (scene_.nodes[n].mesh >= 0) visit_node(moment, n, visit);
+    }
+
+  private:
+    void visit_node(const Moment& moment, size_t n, const PointVisitor& visit) {
+        const size_t mesh = size_t(scene_.nodes[n].mesh);
+        // What stands still is looked at once, and then all of it.
+        const bool rests = moment.worlds[n] == rest_.worlds[n], first = rests && !has_rested_[n];
+        has_rested_[n] = has_rested_[n] || rests;
+        for (size_t i = 0; i < primitives_[mesh].size(); i++) {
+            const bool rigid = is_rigid(*primitives_[mesh][i], scene_.nodes[n]);
+            if (rigid && first)
+                visit_used(scene_, moment, n, *primitives_[mesh][i], visit);
+            else if (!rigid || !rests)
+                visit_finite(positions_of(scene_, moment, n, thinned_[mesh][i]), visit);
+        }
+    }
+
+    const Scene& scene_;
+    Moment rest_;
+    std::vector<std::vector<const Primitive*>> primitives_;
+    std::vector<std::vector<Primitive>> thinned_;
+    std::vector<bool> has_rested_;
+};
+
 }  // namespace
+
+void visit_points(const Scene& scene, const Moment& moment, size_t nodes, Counted counted, const PointVisitor& visit) {
+    const auto meshes = counted_primitives(scene, counted);
+    for (size_t n = 0; n < nodes; n++) {
+        if (scene.nodes[n].mesh < 0) continue;
+        for (const Primitive* primitive : meshes[size_t(scene.nodes[n].mesh)])
+            visit_used(scene, moment, n, *primitive, visit);
+    }
+}
 
 Box bounds(const Scene& scene, const Moment& moment) {
     Box box;
-    for (size_t n = 0; n < scene.nodes.size(); n++) {
-        const Node& node = scene.nodes[n];
-        if (node.mesh < 0) continue;
-        for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
-            const std::vector<glm::vec3> positions = positions_of(scene, moment, n, primitive);
-            for_each_vertex(primitive, [&](size_t i) { box.add(positions[i]); });
-        }
-    }
+    visit_points(scene, moment, scene.nodes.size(), Counted::all, [&](std::span<const glm::vec3> points) {
+        for (const glm::vec3& p : points) box.add(p);
+    });
     return box;
 }
 
-Box bounds_over(const Scene& scene, const std::string& which) {
-    const std::vector<double> times = moments(find_animations(scene, which));
-    const Moment rest = at_rest(scene);
-    Box box = bounds(scene, rest);
-    if (motion_of(scene, which).generates) {
-        box.add(scene.generated.reach.lower);
-        box.add(scene.generated.reach.upper);
-    }
-    const size_t stride = 1 + vertices_of_nodes(scene) * times.size() / most_places;
-    std::vector<std::vector<Primitive>> meshes;
-    for (const Mesh& mesh : scene.meshes) {
-        meshes.emplace_back();
-        for (const Primitive& primitive : mesh.primitives) meshes.back().push_back(thinned(primitive, stride));
-    }
-    for (const double time : times) {
-        const Moment moment = moment_of(scene, which, time);
-        for (size_t n = 0; n < scene.nodes.size(); n++) {
-            const Node& node = scene.nodes[n];
-            if (node.mesh < 0) continue;
-            for (const Primitive& primitive : meshes[size_t(node.mesh)]) {
-                if (is_rigid(primitive, node) && moment.worlds[n] == rest.worlds[n]) continue;
-                // Positions beyond the range of floats are refused when that moment is shown.
-                for (const glm::vec3& p : positions_of(scene, moment, n, primitive))
-                    if (is_finite(p)) box.add(p);
-            }
-        }
-    }
-    return box;
+void visit_reach(const Scene& scene, const std::string& which, Counted counted, const PointVisitor& visit) {
+    if (which.empty()) return visit_points(scene, at_rest(scene), scene.nodes.size(), counted, visit);
+    std::vector<double> times = moments(find_animations(scene, which));
+    // What has no end is shown by its reach; the rest of the scene stands.
+    if (times.empty()) times = {0};
+    Reach reach(scene, counted, times.size());
+    for (const double time : times) reach.visit_at(moment_of(scene, which, time), visit);
+    if (!motion_of(scene, which).generates) return;
+    const auto& box = scene.generated.reach;
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 8; i++)
+        corners.emplace_back(i & 1 ? box.upper.x : box.lower.x, i & 2 ? box.upper.y : box.lower.y,
+                             i & 4 ? box.upper.z : box.lower.z);
+    visit(corners);
 }
 
 }  // namespace peelray

@@ -32,6 +32,12 @@ Environment sky_environment(const glm::vec3& sun_direction);
 /// The sun's direction when the user gives none.
 glm::vec3 default_sun_direction();
 
+/// A photographer's studio, for files that bring no light: soft boxes before a grey backdrop that is brightest at its
+/// horizon. What faces the framed view's camera gets an irradiance of about pi, so that a grey of 18 % looks like one,
+/// and nothing more than 1.3 times that. No light stands for a spot of it. Its levels are what GGX of growing roughness
+/// reflects.
+Environment studio_environment();
+
 /// The same radiance from everywhere.
 Environment color_environment(const glm::vec3& radiance);
 

@@ -108,31 +108,4 @@ Geometry flatten(const Scene& scene, const Moment& moment) {
     return out;
 }
 
-Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
-    Camera camera;
-    camera.name = "framed";
-    camera.vertical_fov = glm::radians(40.f);
-    if (!(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z)) return camera;
-    const glm::vec3 half = 0.5f * upper - 0.5f * lower;
-    const glm::vec3 look = lower + half;
-    const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.45f, 1.f));
-    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back)), up = glm::cross(back, right);
-    constexpr float margin = 1.05f;
-    const float tangent = std::tan(camera.vertical_fov / 2) / margin;
-    // The nearest eye on the line through the middle from which every corner lies inside the frame.
-    float distance = 1e-4f;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 p = half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        const float needed = std::max(std::abs(glm::dot(p, up)), std::abs(glm::dot(p, right)) / aspect) / tangent;
-        distance = std::max(distance, glm::dot(p, back) + needed);
-    }
-    // A single point far from the origin needs a distance that its coordinates can still express.
-    const glm::vec3 magnitude = glm::abs(look);
-    distance = std::max(distance,
-                        1e-3f * std::max({magnitude.x, magnitude.y, magnitude.z}) * (half == glm::vec3(0) ? 1.f : 0.f));
-    camera.look = look;
-    camera.eye = look + back * distance;
-    return camera;
-}
-
 }  // namespace peelray

@@ -188,12 +188,6 @@ struct Node {
         false;  ///< one of those that its parent is shown as, moved from there by `local`; so is its skin
 };
 
-/// Where light comes from on a miss.
-struct Sky {
-    bool procedural = false;     ///< a clear sky with a sun of its own; false: what the caller says (image or colour)
-    glm::vec3 sun_direction{0};  ///< unit, from the scene to the sun
-};
-
 /// Keys over time for one property of one node (glTF 2.0, section 3.11 and appendix C).
 struct AnimationChannel {
     enum class Path : uint8_t { translation, rotation, scale, weights };
@@ -229,6 +223,7 @@ struct Scene {
     std::vector<Camera> cameras;  ///< in world space, by number; of equal ones in the order of the nodes that show them
     std::vector<Camera> unplaced_cameras;  ///< by number; no node shows them, so that they have a lens but no place
     std::vector<Light> lights;             ///< in world space
+    bool outdoors = false;                 ///< where nothing else lights it, a clear sky does; otherwise a studio
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     Generated generated;                              ///< what is computed for every moment, if anything is
@@ -267,8 +262,5 @@ struct Geometry {
 /// World-space triangles of the whole scene at rest (see Geometry). Throws Error when there is no triangle, naming the
 /// scene.
 Geometry flatten(const Scene& scene);
-
-/// A camera that sees the whole box from slightly above and to the right, with a 40° vertical field of view.
-Camera frame_box(const glm::vec3& lower, const glm::vec3& upper, float aspect);
 
 }  // namespace peelray

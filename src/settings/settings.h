@@ -19,6 +19,8 @@ struct ViewArguments {
     std::string camera;
     std::optional<double> time;  ///< seconds
     std::string animation;
+    bool frame_moment = false;
+    bool goes_round = false;  ///< not an option: the camera is going to, and is to see everything on the way
 };
 
 inline void add_view(SettingList& list, ViewArguments& a) {
@@ -68,6 +70,11 @@ inline void add_view(SettingList& list, ViewArguments& a) {
          .group = group,
          .help = "which one, see 'peelray info SCENE', or all at once; default: the first, with --time or --frames",
          .form = "NAME|N|all"});
+    add_setting(list, a.frame_moment,
+                {.name = "frame-moment",
+                 .group = group,
+                 .help = "without a camera: show as large as can be what there is at this moment, not all that the "
+                         "animation reaches; for one moment, not for --frames"});
 }
 
 /// What lights the scene, and how bright the picture is.
@@ -87,7 +94,8 @@ inline void add_light(SettingList& list, LightArguments& a) {
     add_setting(list, a.sky,
                 {.name = "sky",
                  .group = group,
-                 .help = "procedural sky with a sun; the default where the scene has no lights",
+                 .help = "procedural sky with a sun; default: a studio for a file without lights, this sky for a "
+                         "built-in scene without, a dim grey for a scene with lights",
                  .excludes = {"env"}});
     add_setting(list, a.background,
                 {.name = "background",

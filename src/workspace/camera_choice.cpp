@@ -59,9 +59,18 @@ std::string camera_label(const std::vector<Camera>& cameras, size_t index) {
                        std::count_if(cameras.begin(), cameras.begin() + std::ptrdiff_t(index), is_same));
 }
 
+Framing::Lens framing_lens(const PictureArguments& a) {
+    Framing::Lens lens;
+    lens.aspect = float(a.size.x) / float(a.size.y);
+    if (a.fov) lens.vertical_fov = glm::radians(*a.fov);
+    if (a.up) lens.up = *a.up;
+    return lens;
+}
+
 Camera choose_camera(const PictureArguments& a, const Scene& scene, const std::vector<Camera>& cameras,
-                     const Box& box) {
-    Camera camera = frame_box(box.lower, box.upper, float(a.size.x) / float(a.size.y));
+                     const Framing& framing) {
+    const Box& box = framing.box();
+    Camera camera = framing.camera();
     if (!a.camera.empty())
         camera = find_camera(scene, cameras, a.camera);
     else if (!a.eye && !a.look && !cameras.empty())

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/box.h"
+#include "scene/framing.h"
 #include "scene/scene.h"
 #include "settings/settings.h"
 
@@ -14,9 +14,12 @@ namespace peelray {
 /// order ("1" is then the first).
 std::string camera_label(const std::vector<Camera>& cameras, size_t index);
 
-/// A camera of the scene, or one that sees all of `box`, with what the settings say of its place. `cameras`: those of
-/// the scene, where they are now. Throws Error for a camera that the scene does not have.
+/// What the settings say of the camera that frames a picture.
+Framing::Lens framing_lens(const PictureArguments& settings);
+
+/// A camera of the scene, or the framing's, with what the settings say of its place. `cameras`: those of the scene,
+/// where they are now. Throws Error for a camera that the scene does not have.
 Camera choose_camera(const PictureArguments& settings, const Scene& scene, const std::vector<Camera>& cameras,
-                     const Box& box);
+                     const Framing& framing);
 
 }  // namespace peelray

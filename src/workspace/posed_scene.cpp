@@ -1,5 +1,6 @@
 #include "workspace/posed_scene.h"
 
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -31,8 +32,23 @@ Environment choose_environment(const PictureArguments& a, const Scene& scene, co
     }
     if (a.background) return color_environment(*a.background);
     // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
-    if (a.sky || scene.lights.empty()) return sky_environment(default_sun_direction());
-    return color_environment(glm::vec3(0.05f));
+    if (a.sky || (scene.lights.empty() && scene.outdoors)) return sky_environment(default_sun_direction());
+    return scene.lights.empty() ? studio_environment() : color_environment(glm::vec3(0.05f));
+}
+
+/// A framing by what is visible of points that are visited; by all of them where nothing is.
+template <typename Visit>
+Framing framing_of(const PictureArguments& a, Visit visit) {
+    const auto around = [&](const std::optional<glm::vec3>& pivot) {
+        Framing framing(framing_lens(a), pivot);
+        const auto add = [&](std::span<const glm::vec3> points) { framing.add(points); };
+        // Another material has no holes.
+        if (!a.material) visit(Counted::visible, add);
+        if (framing.box().lower.x > framing.box().upper.x) visit(Counted::all, add);
+        return framing;
+    };
+    const Framing standing = around({});
+    return a.goes_round ? around(0.5f * (standing.box().lower + standing.box().upper)) : standing;
 }
 
 }  // namespace
@@ -42,9 +58,13 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
         load_scene(settings.scene, {settings.variant, settings.point_size.value_or(0), settings.double_sided}));
     animation_ = choose_animation(settings, *scene, notes);
     if (!animation_.empty()) complete_targets(*scene);
-    framed_ = animation_.empty() ? peelray::bounds(*scene, at_rest(*scene)) : bounds_over(*scene, animation_);
+    frame_animation(*scene);
+    own_nodes_ = scene->nodes.size();
     if (settings.material) override_materials(*scene, *settings.material, framed_);
-    bounds_ = settings.floor ? add_floor(*scene, framed_) : framed_;
+    bounds_ = peelray::bounds(*scene, at_rest(*scene));
+    const Box shown = settings.floor ? add_floor(*scene, framed_) : framed_;
+    bounds_.add(shown.lower);
+    bounds_.add(shown.upper);
     scene_ = std::move(scene);
     if (animation_.empty())
         moment_ = at_rest(*scene_);
@@ -52,7 +72,8 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
         pose(settings.time.value_or(0));
     check_visible(geometry(), *scene_, time_.has_value(), notes);
     triangles_ = geometry().triangles.size();
-    camera_ = choose_camera(settings_, *scene_, moment_.cameras, framed_);
+    if (settings.frame_moment) frame_moment();
+    camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
     environment_ = choose_environment(settings, *scene_, notes);
 }
 
@@ -78,7 +99,22 @@ void PosedScene::pose(double seconds) {
 void PosedScene::move_to(double seconds) {
     if (animation_.empty() || time_ == seconds) return;
     pose(seconds);
-    camera_ = choose_camera(settings_, *scene_, moment_.cameras, framed_);
+    if (settings_.frame_moment) frame_moment();
+    camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
+}
+
+void PosedScene::frame_animation(const Scene& scene) {
+    const auto visit = [&](Counted counted, const PointVisitor& add) { visit_reach(scene, animation_, counted, add); };
+    framing_ = framing_of(settings_, visit);
+    framed_ = framing_.box();
+}
+
+void PosedScene::frame_moment() {
+    simulate();
+    const auto visit = [&](Counted counted, const PointVisitor& add) {
+        visit_points(*scene_, moment_, own_nodes_, counted, add);
+    };
+    framing_ = framing_of(settings_, visit);
 }
 
 Assembly PosedScene::assembly() const {

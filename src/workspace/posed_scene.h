@@ -8,6 +8,7 @@
 #include "motion/simulation.h"
 #include "scene/box.h"
 #include "scene/environment.h"
+#include "scene/framing.h"
 #include "settings/settings.h"
 #include "workspace/notes.h"
 
@@ -30,9 +31,9 @@ class PosedScene {
     const std::string& animation() const { return animation_; }
     /// Of the moment, in the animation; none: at rest.
     std::optional<double> time() const { return time_; }
-    /// The scene without the floor of the settings, over the whole animation.
+    /// What is visible of the scene, without the floor of the settings, over the whole animation.
     const Box& framed() const { return framed_; }
-    /// The same with the floor.
+    /// Everything, with the floor, also at rest.
     const Box& bounds() const { return bounds_; }
     uint64_t triangles() const { return triangles_; }  ///< with all instances
 
@@ -53,6 +54,8 @@ class PosedScene {
 
   private:
     void pose(double seconds);
+    void frame_animation(const Scene& scene);
+    void frame_moment();
 
     PictureArguments settings_;
     std::unique_ptr<const Scene> scene_;
@@ -62,6 +65,8 @@ class PosedScene {
     Simulation simulation_;
     bool simulated_ = false;  ///< the moment has been
     std::optional<Geometry> geometry_;
+    Framing framing_;       ///< of the camera that shows all of it
+    size_t own_nodes_ = 0;  ///< of the scene, without the floor of the settings
     Box framed_, bounds_;
     uint64_t triangles_ = 0;
     Camera camera_;

@@ -165,9 +165,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
                     SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
                     SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
-                    SceneCase{"textures", {"all textures", "--ldc", "512"}},
-                    SceneCase{"textures_samples", {"all textures", "--ldc", "512", "--spp", "4"}},
-                    SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--ldc", "512"}}),
+                    SceneCase{"textures", {"all textures", "--sky", "--ldc", "512"}},
+                    SceneCase{"textures_samples", {"all textures", "--sky", "--ldc", "512", "--spp", "4"}},
+                    SceneCase{"bunny",
+                              {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--sky", "--ldc", "512"}},
+                    SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512"}}),
     name_of);
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
                          testing::Values(SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}},
@@ -178,8 +180,9 @@ INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
                                          SceneCase{"samples",
                                                    {"builtin:teapots", "--ldc", "512", "--spp", "3", "--effects",
                                                     "reflection,refraction,shadow,ambient"}},
-                                         SceneCase{"car", {"meshes/car2.glb", "--floor", "--ldc", "512"}},
-                                         SceneCase{"TransmissionTest", {"gltf/TransmissionTest.glb", "--ldc", "768"}}),
+                                         SceneCase{"car", {"meshes/car2.glb", "--floor", "--sky", "--ldc", "512"}},
+                                         SceneCase{"TransmissionTest",
+                                                   {"gltf/TransmissionTest.glb", "--sky", "--ldc", "768"}}),
                          name_of);
 
 std::vector<SceneCase> moments(const std::string& name, const std::vector<const char*>& times,
@@ -204,9 +207,9 @@ std::vector<SceneCase> moving(size_t which) {
         for (SceneCase& c : moments(name, times, words)) cases[to].push_back(c);
     };
     const auto model = [](const std::string& file) {
-        return std::vector<std::string>{"skinned/" + file, "--animation", "all", "--floor"};
+        return std::vector<std::string>{"skinned/" + file, "--animation", "all", "--floor", "--sky"};
     };
-    const std::vector<std::string> tiny = {"skinned/tiny.glb", "--animation", "Walk", "--floor"};
+    const std::vector<std::string> tiny = {"skinned/tiny.glb", "--animation", "Walk", "--floor", "--sky"};
     add(0, "tiny", {"0.4"}, tiny);
     add(1, "tiny", {"0", "1.7"}, tiny);
     add(1, "CesiumMan", {"0.7", "1.5"}, model("CesiumMan.glb"));
@@ -235,7 +238,7 @@ TEST_F(ProgramTest, NormalsInTheTrianglesPlaneLookTheSame) {
         "v -0.5 0 0.8660254\nv 0.5 0 -0.8660254\nv 0.5 2 -0.8660254\nv -0.5 2 0.8660254\n"
         "vn -0.5 0 0.8660254\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
     const Outcome run = this->run({"compare", in("wall.obj"), "-o", out("r.html"), "--json", out("r.json"), "--size",
-                                   "100x80", "--tracers", "ldc,reference", "--eye", "4,1.5,2", "--floor"});
+                                   "100x80", "--tracers", "ldc,reference", "--eye", "4,1.5,2", "--floor", "--sky"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_LE(nlohmann::json::parse(get(out("r.json")))["pictures"][0]["difference"]["share_different"], 0.001);
 }

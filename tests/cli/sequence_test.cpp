@@ -180,6 +180,23 @@ TEST_F(SequenceTest, TheTurntableStandsUnlessToldOtherwise) {
     EXPECT_EQ(times({"--animation", "grow"}), nlohmann::json({6 / 30.0, 7 / 30.0}));
 }
 
+TEST_F(SequenceTest, NothingLeavesTheTurntablesPicture) {
+    // A bar that is nearly twice as long from the side as it is wide at first.
+    put("bar.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nv 1 0 9\nv 1 1 9\nv 0 1 9\n"
+        "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n");
+    ASSERT_EQ(sequence("t%d.exr", {"--turntable", "8", "--tracer", "none"}, in("bar.obj")).status, 0);
+    uint32_t least = 64;
+    for (int k = 0; k < 8; k++) {
+        const Image frame = read_hdr(out(fmt::format("t{}.exr", k)));
+        for (uint32_t y = 0; y < 48; y++)
+            for (uint32_t x = 0; x < 64; x++)
+                if (frame.at(x, y).w > 0) least = std::min({least, x, 63 - x, y, 47 - y});
+    }
+    EXPECT_GE(least, 2u) << "5 % of 48 pixels stay free";
+    EXPECT_LE(least, 5u);
+}
+
 // ---- stats and the terminal
 
 TEST_F(SequenceTest, StatsTellOfEveryFrame) {
@@ -294,6 +311,7 @@ TEST_F(SequenceTest, RangesThatMakeNoSense) {
     for (const std::string shard : {"x", "1", "1/", "/2", "-1/2", "1:2", "1/2/3", ""})
         refused({"--frames", "0:3", "--shard", shard}, "'" + shard + "' is not a part i/n", 2);
     refused({"--frames", "0:3", "--time", "1"}, "leave one of them out");
+    refused({"--frames", "0:3", "--frame-moment"}, "--frame-moment would frame each of many moments anew");
     refused({"--frames", "0:3", "--repeat", "2"}, "--repeat measures one picture");
     refused({"--frames", "0:3", "--animation", "swim"}, "no animation 'swim': there is 0: fly, 1: grow");
     refused({"--frames", "0:3", "--stats", out("f2.png")}, "written twice");

@@ -40,6 +40,15 @@ void add_animation(Scene& scene, const char* name, Interpolation interpolation, 
         {name, duration, {{1, path, interpolation, width, std::move(times), std::move(values)}}});
 }
 
+/// Around all that is visible and reached.
+Box bounds_over(const Scene& scene, const std::string& which, Counted counted = Counted::visible) {
+    Box box;
+    visit_reach(scene, which, counted, [&](std::span<const glm::vec3> points) {
+        for (const glm::vec3& p : points) box.add(p);
+    });
+    return box;
+}
+
 TEST(Bounds, AtRestAreThoseOfTheTriangles) {
     const Scene scene = pair();
     const Geometry geometry = flatten(scene);
@@ -117,6 +126,54 @@ TEST(Bounds, FollowSkinsAndMorphTargets) {
     skinned.nodes[1].mesh = -1;
     add_animation(skinned, "there", Interpolation::linear, {0, 2}, {0, 0, 0, 5, 0, 0});
     EXPECT_EQ(bounds_over(skinned, "there").upper, glm::vec3(6, 1, 0));
+}
+
+TEST(Bounds, TheRestPoseCountsOnlyWhereItIsShown) {
+    Scene scene = pair();
+    scene.nodes[1].local[3] = glm::dvec4(0, -50, 0, 1);
+    scene.nodes[1].rest.translation = {0, -50, 0};
+    add_animation(scene, "there", Interpolation::linear, {0, 2}, {1, 0, 0, 5, 0, 0});
+    EXPECT_EQ(bounds_over(scene, "there").lower, glm::vec3(0));
+    EXPECT_EQ(bounds_over(scene, "there").upper, glm::vec3(6, 1, 0));
+    EXPECT_EQ(bounds_over(scene, "").lower, glm::vec3(0, -50, 0));
+    EXPECT_EQ(bounds_over(scene, "").upper, glm::vec3(1, 1, 0));
+}
+
+TEST(Bounds, WhatAlphaMasksLeaveNothingOfDoesNotCount) {
+    Scene scene = pair();
+    scene.materials.resize(2);
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].primitives[0].material = 1;
+    scene.nodes[1].mesh = 1;
+    scene.nodes[1].local[3] = glm::dvec4(0, 70, 0, 1);
+    Material& masked = scene.materials[1];
+    Primitive& p = scene.meshes[1].primitives[0];
+    const auto counts = [&] {
+        EXPECT_EQ(bounds_over(scene, "", Counted::all).upper.y, 71);
+        EXPECT_EQ(bounds(scene, at_rest(scene)).upper.y, 71);
+        return bounds_over(scene, "").upper.y == 71;
+    };
+    masked.alpha = 0;
+    EXPECT_TRUE(counts()) << "opaque, whatever the alpha";
+    masked.alpha_cutoff = 0.5f;
+    EXPECT_FALSE(counts());
+    masked.alpha = 0.5f;
+    EXPECT_TRUE(counts());
+    p.colors.assign(p.positions.size(), glm::vec4(1, 1, 1, 0.9f));
+    EXPECT_FALSE(counts());
+    p.colors[1].w = 1;
+    EXPECT_TRUE(counts());
+    masked.base_color_texture = 0;
+    scene.textures.resize(1);
+    scene.textures[0].texels = {0x00FFFFFF, 0xFEFFFFFF};
+    EXPECT_FALSE(counts());
+    scene.textures[0].texels[0] = 0xFF000000;
+    EXPECT_TRUE(counts());
+    scene.textures[0].texels.clear();
+    scene.textures[0].deep_texels = {0xFFFEull << 48};
+    EXPECT_FALSE(counts());
+    scene.textures[0].deep_texels = {0xFFFFull << 48};
+    EXPECT_TRUE(counts());
 }
 
 TEST(Turned, GoesRoundTheLookPoint) {

@@ -98,7 +98,7 @@ TEST_F(PovRayTest, CameraRaysMeetTheSamePoints) {
         settings.height = 256;
         settings.bounces = 0;
         settings.aovs = true;
-        settings.camera = scene.cameras.empty() ? frame_box(geometry.lower, geometry.upper, 1.25f) : scene.cameras[0];
+        settings.camera = scene.cameras.at(0);
         const Environment black = color_environment(glm::vec3(0));
         const Picture picture = PathTracer(scene, at_rest(scene), geometry, black).render(settings);
         write_scene(geometry, make_view(settings.camera, 1.25f, geometry.lower, geometry.upper));

@@ -92,34 +92,5 @@ TEST(Flatten, EmptyAndOverflowingScenes) {
     }
 }
 
-void expect_in_view(const glm::vec3& lower, const glm::vec3& upper, float aspect) {
-    const Camera camera = frame_box(lower, upper, aspect);
-    EXPECT_NEAR(camera.vertical_fov, glm::radians(40.f), 1e-6);
-    const glm::mat4 view = glm::lookAt(glm::vec3(camera.eye), glm::vec3(camera.look), camera.up);
-    const float tangent = std::tan(camera.vertical_fov / 2);
-    float fullest = 0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::vec3 p =
-            view * glm::vec4(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z, 1);
-        ASSERT_LT(p.z, 0);
-        fullest = std::max({fullest, std::abs(p.y / p.z) / tangent, std::abs(p.x / p.z) / (tangent * aspect)});
-    }
-    EXPECT_LE(fullest, 1);
-    EXPECT_GT(camera.eye.y, camera.look.y);
-    EXPECT_GT(camera.eye.x, camera.look.x);
-    const float least = lower == upper ? 0 : 0.9f;  // no smaller than need be
-    EXPECT_GE(fullest, least);
-}
-
-TEST(FrameBox, SeesTheWholeBox) {
-    expect_in_view({-1, -1, -1}, {1, 1, 1}, 1.25f);
-    expect_in_view({100, 0, -3}, {900, 1, 3}, 1.25f);
-    expect_in_view({0, 0, 0}, {1, 80, 1}, 1.25f);
-    expect_in_view({0, 0, 0}, {1, 0, 1}, 0.3f);
-    expect_in_view({5, 5, 5}, {5, 5, 5}, 1);
-    const Camera empty = frame_box(glm::vec3(INFINITY), glm::vec3(-INFINITY), 1);
-    EXPECT_TRUE(std::isfinite(glm::length(empty.eye)));
-}
-
 }  // namespace
 }  // namespace peelray::testing

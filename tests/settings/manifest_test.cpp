@@ -58,7 +58,7 @@ TEST(Manifest, WritesValuesAsRunsBegunEarlierDid) {
     a.tracing.ldc = 32;
     const Json defaults = Json::parse(R"({
         "--size": "1280x1024", "--eye": null, "--look": null, "--up": null, "--fov": null, "--camera": null,
-        "--time": null, "--animation": "0", "--fps": "30", "--turntable": null, "--env": null, "--sky": null,
+        "--time": null, "--animation": "0", "--frame-moment": null, "--fps": "30", "--turntable": null, "--env": null, "--sky": null,
         "--background": null, "--exposure": "0", "--tonemap": "neutral", "--tracer": "ldc",
         "--effects": "reflection,refraction,shadow", "--bounces": "4", "--spp": "1", "--material": null,
         "--floor": null, "--hit": "auto", "--ldc": "32", "--tolerance": "0.001", "--builder": "auto",

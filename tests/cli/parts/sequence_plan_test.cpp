@@ -90,6 +90,15 @@ TEST(SequencePlan, WhatContradictsItselfIsRefused) {
     moment.time = 1;
     refused(moment, "leave one of them out");
 
+    RenderArguments framed = of_frames(0, 2);
+    framed.frame_moment = true;
+    refused(framed, "--frame-moment would frame each of many moments anew");
+    RenderArguments runs = of_turntable(8);
+    runs.frame_moment = true;
+    EXPECT_NO_THROW(plan_sequence(runs)) << "one moment, seen from all sides";
+    runs.sequence.fps = 30;
+    refused(runs, "--frame-moment");
+
     RenderArguments late = of_frames(10, 12);
     late.sequence.fps = 1e-5;
     refused(late, "frame 11 at 1e-05 frames per second is beyond 1000000 seconds");
