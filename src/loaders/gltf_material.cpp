@@ -186,7 +186,7 @@ class MaterialReader {
             material_.blended = false;
             ++loader_.ignored["alphaMode BLEND of {} material{|s} that {bounds|bound} a refracting volume ignored"];
         }
-        if (material_.blended && least * 255 < 0.5) material_.alpha_cutoff = 0.5f / 255;
+        if (material_.blended && material_.alpha * least * 255 < 0.5) material_.alpha_cutoff = 0.5f / 255;
     }
 
     void read_emission() {

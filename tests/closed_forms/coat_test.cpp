@@ -23,7 +23,7 @@ Primitive square() {
 
 Camera oblique(double cosine) {
     const double sine = std::sqrt(1 - cosine * cosine);
-    return orthographic({float(4 * sine), 0, float(4 * cosine)}, {0, 0, 0}, 0.5f);
+    return orthographic({float(4 * sine), 0, float(4 * cosine)}, {0, 0, 0}, 0.3f);
 }
 
 TEST_F(CoatTest, MirrorsBySchlick) {
