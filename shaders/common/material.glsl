@@ -34,12 +34,14 @@ bool alphaPresent(uint triangle, vec2 weights) {
     return alpha >= cutoff - ALPHA_ROUNDING;
 }
 
-/// May light pass through the triangle somewhere?
+/// May light pass through the triangle somewhere, as through glass?
 bool mayTransmit(uint triangle) {
     const uint index = triangle_materials[triangle];
-    if ((materials[index].flags & MATERIAL_BLENDED) != 0u) return true;
     return materials[index].transmission > 0.0 && (materials[index].metallic < 1.0 || materials[index].textures[TEXTURE_METALLIC] >= 0);
 }
+
+/// The same, or beside it, since it is blended?
+bool mayPass(uint triangle) { return (materials[triangle_materials[triangle]].flags & MATERIAL_BLENDED) != 0u || mayTransmit(triangle); }
 
 // --- What shading asks for ---
 
@@ -81,7 +83,7 @@ vec4 baseColor(uint material, TexturePlace place) {
         color *= colors[place.corners.x] * place.weights.x + colors[place.corners.y] * place.weights.y + colors[place.corners.z] * place.weights.z;
     const int index = materials[material].textures[TEXTURE_BASE_COLOR];
     if (index >= 0) color *= textureAt(index, place);
-    if (!blended || (materials[material].flags & MATERIAL_BLENDED) == 0u) color.a = 1.0;
+    if (!blended || (materials[material].flags & MATERIAL_BLENDED) == 0u || color.a >= ALPHA_WHOLE) color.a = 1.0;
     return color;
 }
 

@@ -50,7 +50,8 @@ vec3 fade(inout Branch branch, float roughness, float metallic) {
 }
 
 /// A clear coat on a surface takes its share of the light and lets the rest through, both ways at once (KHR_materials_clearcoat). What it
-/// mirrors is the second branch of an opaque surface; glass and blended surfaces, which need that one, mirror it with their own.
+/// mirrors is the second branch of an opaque surface; glass and blended surfaces, which need that one, mirror it with their own, if they have
+/// one.
 void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bool has_second, inout vec3 radiance, inout Branch reflection,
              inout Branch refraction) {
     const vec3 view = -incoming;
@@ -59,7 +60,7 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
     radiance *= 1.0 - share;
     reflection.weight *= 1.0 - share;
     refraction.weight *= 1.0 - share;
-    if (has_second) {
+    if (has_second && largest(reflection.weight) > 0.0) {
         reflection.weight += share;
         decide(reflection, state, false);
         return;
@@ -70,11 +71,15 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
         const float above = dot(reflected, s.coat_normal);
         weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * (above > 0.0 ? ggxMasking(above, alpha) : 0.0);
     }
-    refraction = Branch(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(mirror ? 0u : RAY_SEES_SUN), false, 0.0,
+    Branch coat = Branch(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(mirror ? 0u : RAY_SEES_SUN), false, 0.0,
                         filtered ? packCone(coneReflected(cone, s.curvature)) : 0u, EFFECT_REFLECTION);
-    decide(refraction, state, false);
-    radiance += fade(refraction, m.coat_roughness, 0.0);
-    refraction.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
+    decide(coat, state, false);
+    radiance += fade(coat, m.coat_roughness, 0.0);
+    coat.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
+    if (has_second)
+        reflection = coat;
+    else
+        refraction = coat;
 }
 
 /// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.

@@ -70,6 +70,13 @@ vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float t
     return directionOr(tangent * parts.x + bitangent * parts.y + normal * parts.z, otherwise);
 }
 
+/// How much the corners' normals turn per world unit along the edges, their mean; > 0: a bulge.
+float curvatureOf(vec3 a, vec3 b, vec3 c, vec3 na, vec3 nb, vec3 nc) {
+    const vec3 ab = b - a, bc = c - b, ca = a - c;
+    const float way = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
+    return way > 0.0 ? (dot(nb - na, ab) + dot(nc - nb, bc) + dot(na - nc, ca)) / way : 0.0;
+}
+
 /// `width`: of the light that the ray along `direction` stands for (cone.glsl); 0: a point, which textures do not blur.
 Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float width) {
     Surface s;
@@ -111,9 +118,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
     s.curvature = 0.0;
     if (filtered) {
         if (size > 0.0) place.seen = width * width / (max(abs(dot(s.geometric, direction)), LEAST_COSINE) * size);
-        const vec3 ab = b - a, bc = c - b, ca = a - c;
-        const float way = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
-        if (way > 0.0) s.curvature = side * (dot(nb - na, ab) + dot(nc - nb, bc) + dot(na - nc, ca)) / way;
+        s.curvature = side * curvatureOf(a, b, c, na, nb, nc);
     }
     vec3 bent = normal;
     s.material = triangle_materials[triangle];

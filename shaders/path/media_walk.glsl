@@ -148,7 +148,7 @@ MediaMeeting mediaFollow(PeelrayRay ray, uvec2 skip, MediaStack media, bool know
         }
         if (hit.triangle != PEELRAY_MISS) {
             const bool parallel = abs(dot(here.geometric, m.surface.geometric)) >= WALLS_PARALLEL;
-            if (!wall && parallel && !mayTransmit(hit.triangle)) {
+            if (!wall && parallel && !mayPass(hit.triangle)) {
                 m.hit = hit;
                 m.wall = false;
                 return m;

@@ -82,7 +82,7 @@ void decide(inout Branch branch, RayState state, bool passes) {
 
 /// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
 bool isCut(Branch branch, RayState state, bool passes) {
-    return params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & branch.effect) != 0u &&
+    return frame[0].bounces > 0u && params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & branch.effect) != 0u &&
            largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 

@@ -56,6 +56,9 @@
 // An alpha this little below the cutoff counts as reaching it: rounding makes no holes where both are equal.
 #define ALPHA_ROUNDING 1e-6
 
+// An alpha from here on is all: interpolation rounds.
+#define ALPHA_WHOLE 0.99999
+
 // Blended surfaces that a path goes straight through before they count as bounces.
 #define BLENDED_PASSED 8
 

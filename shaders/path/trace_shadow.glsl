@@ -31,7 +31,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         const PeelrayHit hit = meeting.hit;
         share *= meeting.at.passed;
         if (hit.triangle == PEELRAY_MISS) return share;
-        if (!mayTransmit(hit.triangle)) return vec3(0);
+        if (!mayPass(hit.triangle)) return vec3(0);
         const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction, 0.0);
         const Material m = materialOf(s);
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);
@@ -58,7 +58,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
     for (uint layer = 0u; layer < SHADOW_LAYERS; layer++) {
         const PeelrayHit hit = traceShadow(ray, skip, false);
         if (hit.triangle == PEELRAY_MISS) return share;
-        if (!mayTransmit(hit.triangle)) return vec3(0);
+        if (!mayPass(hit.triangle)) return vec3(0);
         const Surface s = surfaceAt(hit.instance, hit.triangle, shadowWeights(ray, hit), ray.direction, 0.0);
         const Material m = materialOf(s);
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);

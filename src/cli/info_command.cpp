@@ -30,8 +30,10 @@ std::string named(const std::string& name) {
 std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
                                    m.base_color.y, m.base_color.z, m.metallic, m.roughness);
-    constexpr const char* uses[] = {"",           "emission ", "metal ",     "roughness ", "transmission ",
-                                    "thickness ", "normal ",   "occlusion ", "specular ",  "specular colour "};
+    constexpr std::array uses = {"",           "emission ",       "metal ",      "roughness ", "transmission ",
+                                 "thickness ", "normal ",         "occlusion ",  "specular ",  "specular colour ",
+                                 "coat ",      "coat roughness ", "coat normal "};
+    static_assert(uses.size() == material_textures.size());
     for (size_t i = 0; i < material_textures.size(); i++)
         if (const MaterialTexture& used = m.*material_textures[i])
             text += fmt::format(", {}texture {}", uses[i], used.texture);
@@ -45,6 +47,7 @@ std::string describe(const Material& m) {
     if (m.specular != 1 || m.specular_color != glm::vec3(1))
         text += fmt::format(", specular {:.3g} times {:.3g} {:.3g} {:.3g}", m.specular, m.specular_color.x,
                             m.specular_color.y, m.specular_color.z);
+    if (m.clearcoat > 0) text += fmt::format(", clear coat {:.3g} of roughness {:.3g}", m.clearcoat, m.coat_roughness);
     if (m.unlit) text += ", unlit";
     if (is_single_sided(m)) text += ", front only";
     return text;

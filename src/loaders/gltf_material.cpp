@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "loaders/gltf.h"
 #include "loaders/images.h"
+#include "scene/media.h"
 #include "scene/sampling.h"
 
 namespace peelray {
@@ -182,7 +183,7 @@ class MaterialReader {
             return std::ranges::any_of(mesh.primitives, [](const auto& p) { return p.attributes.contains("COLOR_0"); });
         };
         material_.blended = material_.alpha * least < 1 || std::ranges::any_of(model_.meshes, has_colors);
-        if (material_.transmission > 0 && material_.thickness > 0 && material_.blended) {
+        if (fills_volume(material_) && material_.blended) {
             material_.blended = false;
             ++loader_.ignored["alphaMode BLEND of {} material{|s} that {bounds|bound} a refracting volume ignored"];
         }

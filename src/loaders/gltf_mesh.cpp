@@ -246,7 +246,8 @@ class PrimitiveReader {
     /// Where the material has a normal texture, and all are right: else they are made. They belong to the file's
     /// normals.
     void read_tangents(Primitive& out) {
-        if (!loader_.scene.materials[out.material].normal_texture || out.normals.empty() || !has("TANGENT")) return;
+        const Material& m = loader_.scene.materials[out.material];
+        if (!(m.normal_texture || m.coat_normal_texture) || out.normals.empty() || !has("TANGENT")) return;
         out.tangents = vectors<glm::vec4>("TANGENT");
         check_count("TANGENT", out.tangents.size(), out);
         for (glm::vec4& tangent : out.tangents) {

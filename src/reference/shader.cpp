@@ -167,7 +167,7 @@ bool Shader::is_traced(const Branch& branch, const Path& path) const {
 
 /// Would it be traced if it were not too far along the path? With no bounces at all nobody asked for it.
 bool Shader::is_cut(const Branch& branch, const Path& path) const {
-    return path.level > 0 && is_wanted(branch, path) && is_last(branch, path);
+    return context_.settings.bounces > 0 && path.level > 0 && is_wanted(branch, path) && is_last(branch, path);
 }
 
 /// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
@@ -258,7 +258,8 @@ void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting
     out.radiance *= 1 - share;
     out.reflection.weight *= 1 - share;
     out.refraction.weight *= 1 - share;
-    if (m.transmits() || m.alpha < 1) {
+    const bool has_second = m.transmits() || m.alpha < 1;
+    if (has_second && largest(out.reflection.weight) > 0) {
         out.reflection.weight += share;
         out.reflection.traced = is_traced(out.reflection, path);
         return;
@@ -281,7 +282,7 @@ void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting
     coat.traced = is_traced(coat, path);
     out.radiance += fade(coat, m.coat_roughness, 0);
     coat.blur = context_.settings.spp > 1 ? 0 : m.coat_roughness;
-    out.refraction = coat;
+    (has_second ? out.reflection : out.refraction) = coat;
 }
 
 /// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin

@@ -161,6 +161,7 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
         o.alpha = double(m.alpha);
         if (!geometry_.colors.empty()) o.alpha *= place.interpolate(geometry_.colors).w;
         if (m.base_color_texture) o.alpha *= data(m.base_color_texture, place, false).w;
+        if (o.alpha >= ALPHA_WHOLE) o.alpha = 1;
     }
     o.emissive *= color(m.emissive_texture, place);
     o.metallic *= number(m.metallic_texture, place);

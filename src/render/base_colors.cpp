@@ -103,7 +103,8 @@ class TextureStore {
         if (row_count_ == 0) return {};
         if (row_count_ > most_rows(device))
             fail(
-                "the textures have {} million texels, more than the {} million that the device '{}' holds: make them "
+                "the textures and their smaller levels take {} million texels, more than the {} million that the "
+                "device '{}' holds: make them "
                 "smaller",
                 row_count_ * width / 1'000'000, most_rows(device) * width / 1'000'000, device.info().name);
         Image2D image(device, "textures", uint32_t(width), uint32_t(std::min(row_count_, layer_rows)),

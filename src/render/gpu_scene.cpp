@@ -92,6 +92,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     for (uint32_t material : assembly.materials) used[material] = true;
     for (size_t i = 0; i < used.size(); i++) {
         has_glass |= used[i] && lets_through(scene.materials[i]);
+        splits |= used[i] && (transmits(scene.materials[i]) || scene.materials[i].clearcoat > 0);
         has_blended |= used[i] && scene.materials[i].blended;
         has_unlit |= used[i] && scene.materials[i].unlit;
     }

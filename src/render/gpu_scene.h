@@ -32,6 +32,7 @@ class GpuScene {
     Buffer lights, environment;
     Buffer split_sum;                  ///< the table of path/split_sum.h
     bool has_glass = false;            ///< some triangle lets light through
+    bool splits = false;               ///< some reflects along two directions, or reflects and refracts
     bool has_blended = false;          ///< some covers a part of what is behind it
     bool layered = false;              ///< rays may be in several media at once (MediaPieces), at this moment
     Buffer media_ranks;                ///< uint32: number of materials, rank by material, material by rank

@@ -68,13 +68,16 @@ void PathQueues::allocate_media() {
 }
 
 void PathQueues::prepare(const Needs& needs) {
-    const auto [pixels, levels, branching, lights, layered] = needs;
+    const auto [pixels, levels, usual, branching, lights, layered] = needs;
     layered_ = layered;
     // One level more than is traced: the deepest level's shader binds a next level that it never writes.
     levels_.resize(std::max<size_t>(levels_.size(), levels + 1));
     allocate(levels_[0], 0, pixels);
     for (uint32_t i = 1; i < levels; i++)
-        allocate(levels_[i], i, std::max(1024u, branching || i == 1 ? pixels / 4 * 3 : pixels / 4));
+        allocate(levels_[i], i,
+                 std::max(1024u, i >= usual            ? pixels / 16
+                                 : branching || i == 1 ? pixels / 4 * 3
+                                                       : pixels / 4));
     allocate(levels_[levels], levels, 64);
     // One ray a pixel is seldom exceeded; who has many lights finds out.
     allocate_lights(lights > 0 ? std::max(1024u, pixels) : 64);

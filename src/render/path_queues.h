@@ -35,6 +35,7 @@ class PathQueues {
     struct Needs {
         uint32_t pixels = 0;     ///< camera rays
         uint32_t levels = 1;     ///< in all
+        uint32_t usual = 1;      ///< of them those that many rays reach; beyond, there are only few as a rule
         bool branching = false;  ///< hits may start two rays
         uint32_t lights = 0;     ///< shadow rays that a hit may start
         bool layered = false;    ///< media may overlap; level 0's rays are then kept as well

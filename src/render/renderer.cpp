@@ -202,8 +202,8 @@ void Renderer::Impl::prepare_maps() {
 
 void Renderer::Impl::prepare_queues() {
     const uint32_t face = f.maps ? f.maps->face() : 0;
-    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.scene.has_glass,
-                      f.lights_per_hit(), f.layered()});
+    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.settings.bounces + 1,
+                      f.scene.splits, f.lights_per_hit(), f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
 }
 

@@ -10,13 +10,16 @@
 namespace peelray {
 
 uint32_t last_level(const PictureSettings& settings, bool has_blended) {
+    if (!settings.refraction) return settings.reflection ? settings.bounces : 0;
     return std::min(settings.bounces + (has_blended ? BLENDED_PASSED : 0u), uint32_t(kBounceLimits.most));
 }
 
 float least_roughness(const Scene& scene, const Material& m) {
-    if (!m.roughness_texture) return m.roughness;
-    return m.roughness *
-           float(least_value(scene.textures[size_t(m.roughness_texture.texture)], m.roughness_texture.channel));
+    const auto least = [&](float factor, const MaterialTexture& use) {
+        return use ? factor * float(least_value(scene.textures[size_t(use.texture)], use.channel)) : factor;
+    };
+    const float own = least(m.roughness, m.roughness_texture);
+    return m.clearcoat > 0 ? std::min(own, least(m.coat_roughness, m.coat_roughness_texture)) : own;
 }
 
 bool is_reflective(const Scene& scene, uint32_t spp) {

@@ -84,7 +84,7 @@ inline bool lets_through(const Material& material) {
     return transmits(material) || material.blended;
 }
 
-/// The material's roughness where it is smoothest.
+/// The material's roughness where it is smoothest, its coat included.
 float least_roughness(const Scene& scene, const Material& material);
 
 /// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more

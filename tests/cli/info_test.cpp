@@ -1,5 +1,6 @@
 // `peelray info` and `peelray devices`.
 #include "cli/program_fixture.h"
+#include "image/image.h"
 
 namespace peelray {
 namespace {
@@ -54,6 +55,23 @@ TEST_F(InfoCommand, Variants) {
     put("square.bin", square_bytes());
     put("square.gltf", gltf.dump());
     expect_says(run({"info", in("square.gltf")}).out, {"variants day, at night"});
+}
+
+TEST_F(InfoCommand, ClearCoat) {
+    auto gltf = square_gltf();
+    gltf["extensionsUsed"] = {"KHR_materials_clearcoat"};
+    gltf["images"] = {{{"uri", "a.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"] = {nlohmann::json::parse(R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 0.5,
+        "clearcoatRoughnessFactor": 0.25, "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0},
+        "clearcoatNormalTexture": {"index": 0}}}})")};
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    write_png(in("a.png"), Image8{1, 1, {0xffffffffu}});
+    const Outcome run = this->run({"info", in("square.gltf")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    expect_says(run.out, {"coat texture 0", "coat roughness texture 0", "coat normal texture 0",
+                          "clear coat 0.5 of roughness 0.25"});
 }
 
 TEST_F(InfoCommand, MasksAndBlending) {

@@ -149,5 +149,25 @@ TEST_F(BlendTest, OnlyTheUnlitShareSkipsTheToneCurve) {
         for (int k = 0; k < 24; k += 8) EXPECT_NEAR(int(got >> k & 255), int(want >> k & 255), 1);
 }
 
+TEST_F(BlendTest, CutRaysAreThoseThatBouncesWouldFollow) {
+    // Behind the sheet a mirror faces it: with one bounce its image is cut at the second one.
+    Stage stage;
+    stage.add(sheet(0), blended(unlit(kRed), 0.5f));
+    stage.add(sheet(-1), plane_mirror());
+    RenderSettings settings = settings_for(kFront, 16);
+    settings.bounces = 0;
+    const RenderResult none = render(stage, white, settings);
+    EXPECT_EQ(none.rays.refraction, 256u);
+    EXPECT_EQ(none.rays.reflection, 0u);
+    EXPECT_EQ(none.rays.cut_reflection + none.rays.cut_refraction, 0u);  // nobody asked for them
+    settings.bounces = 1;
+    const RenderResult one = render(stage, white, settings);
+    EXPECT_EQ(one.rays.refraction, 512u);  // there and back
+    EXPECT_EQ(one.rays.reflection, 256u);
+    EXPECT_EQ(one.rays.cut_reflection, 0u);
+    settings.bounces = 16;  // no level is left for more
+    tally(render(stage, white, settings), kFront, 1e-4, everywhere(0.75 * kRed + 0.25)).expect(0, 256);
+}
+
 }  // namespace
 }  // namespace peelray

@@ -171,5 +171,45 @@ TEST_F(CoatTest, OnGlassItBrightensTheReflection) {
     }).expect(0, 256);
 }
 
+TEST_F(CoatTest, BlendedSurfacesKeepTheirCoat) {
+    // Whatever the surface below: its own reflection is too wide to be traced, or it has none.
+    for (const uint32_t spp : {1u, 8u}) {
+        Stage stage;
+        Material m = coated(lambert({0, 0, 0}), 1, 0);
+        m.blended = true;
+        m.alpha = 0.5f;
+        stage.add(square(), m);
+        stage.add(parallelogram({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), unlit({0.3f, 0.3f, 0.3f}));
+        const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
+        RenderSettings settings = settings_for(camera, 16);
+        settings.spp = spp;
+        tally(render(stage, white, settings), camera, 1e-4, [](const ViewRay&) {
+            return glm::dvec3(0.5 * 0.04 + 0.5 * 0.3f);
+        }).expect(0, 256);
+    }
+}
+
+TEST_F(CoatTest, RoughnessIsTheTexturesChannel) {
+    Stage stage;
+    Material m = coated(lambert({0, 0, 0}), 1, 0.5f);
+    m.coat_roughness_texture = 0;
+    m.coat_roughness_texture.channel = 1;
+    Texture t;
+    t.width = 2;
+    t.height = 1;
+    t.nearest = true;
+    t.texels = {0xff000000u, 0xff00ff00u};  // green: 0 and 1
+    stage.scene.textures = {t};
+    stage.add(square(), m);
+    const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
+    const double rough = ggx_mean(1, 0.5, [](double c) { return schlick(0.04, 1, c); });
+    tally(render(stage, white, settings_for(camera, 32)), camera, 1e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              if (std::abs(ray.origin.x) < 1e-3) return {};
+              return glm::dvec3(ray.origin.x < 0 ? 0.04 : rough);
+          })
+        .expect(0, 1000);
+}
+
 }  // namespace
 }  // namespace peelray

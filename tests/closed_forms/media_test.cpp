@@ -180,6 +180,23 @@ TEST_F(MediaTest, WaterBeforeTheCameraIsNoEffect) {
     }).expect(0, 1024);
 }
 
+TEST_F(MediaTest, BlendedSheetInWater) {
+    // What passes beside it goes on in the water.
+    Stage stage;
+    add_lit_wall(stage);
+    stage.add(plate(5, -4, 8), liquid());
+    Material sheet = unlit({0.9f, 0.2f, 0.1f});
+    sheet.blended = true;
+    sheet.alpha = 0.3f;
+    stage.add(parallelogram({-7, -7, 1}, {14, 0, 0}, {0, 14, 0}), sheet);
+    const Camera camera = perspective({0.4f, 0.3f, 2}, {0.2f, 0.1f, 0}, 40);
+    tally(render(stage, black, settings_for(camera, 32)), camera, 2e-3, [](const ViewRay& ray) {
+        const glm::dvec3 wall = ray.at_plane(2, -2);
+        const auto left = [&](const glm::dvec3& at) { return glm::exp(-kLiquid * glm::length(at - ray.origin)); };
+        return left(ray.at_plane(2, 1)) * 0.3 * glm::dvec3(0.9f, 0.2f, 0.1f) + 0.7 * left(wall) * wall_light(wall);
+    }).expect(0, 1024);
+}
+
 TEST_F(MediaTest, NoAirUnderWhatStandsOnATable) {
     // Through the side of a block that stands on a table: from inside, its bottom would reflect totally.
     for (const bool table_first : {false, true}) {

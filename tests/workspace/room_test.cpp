@@ -278,7 +278,8 @@ TEST(CutRays, AreNotedAboveATenthOfAPercent) {
     rays.primary = 10;
     rays.cut_refraction = 1;
     EXPECT_EQ(Error(cut_note(rays, 16)).line("--"),
-              "1 ray (10.0 % of the camera's) would pass through more glass than --bounces 16 follows: it sees the "
+              "1 ray (10.0 % of the camera's) would pass through more glass or blended surfaces than --bounces 16 "
+              "follows: it sees the "
               "environment there");
 }
 
