@@ -169,7 +169,9 @@ INSTANTIATE_TEST_SUITE_P(
                     SceneCase{"textures_samples", {"all textures", "--sky", "--ldc", "512", "--spp", "4"}},
                     SceneCase{"bunny",
                               {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--sky", "--ldc", "512"}},
-                    SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512"}}),
+                    SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512"}},
+                    SceneCase{"blended", {"gltf/AlphaBlendModeTest.glb", "--floor", "--ldc", "512"}},
+                    SceneCase{"coats", {"gltf/ClearCoatTest.glb", "--ldc", "512"}}),
     name_of);
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
                          testing::Values(SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}},
