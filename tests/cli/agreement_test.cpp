@@ -162,16 +162,15 @@ std::string name_of(const testing::TestParamInfo<SceneCase>& info) {
 // default.
 INSTANTIATE_TEST_SUITE_P(
     Still, Agreement,
-    testing::Values(SceneCase{"glass", {"builtin:glass", "--ldc", "768"}},
-                    SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
-                    SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
-                    SceneCase{"textures", {"all textures", "--sky", "--ldc", "512"}},
-                    SceneCase{"textures_samples", {"all textures", "--sky", "--ldc", "512", "--spp", "4"}},
-                    SceneCase{"bunny",
-                              {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--sky", "--ldc", "512"}},
-                    SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512"}},
-                    SceneCase{"blended", {"gltf/AlphaBlendModeTest.glb", "--floor", "--ldc", "512"}},
-                    SceneCase{"coats", {"gltf/ClearCoatTest.glb", "--ldc", "512"}}),
+    testing::Values(
+        SceneCase{"glass", {"builtin:glass", "--ldc", "768"}}, SceneCase{"leaves", {"builtin:leaves", "--ldc", "1024"}},
+        SceneCase{"blob", {"builtin:blob:20000", "--ldc", "512"}},
+        SceneCase{"textures", {"all textures", "--sky", "--ldc", "512"}},
+        SceneCase{"textures_samples", {"all textures", "--sky", "--ldc", "512", "--spp", "4", "--size", "240x192"}},
+        SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--sky", "--ldc", "512"}},
+        SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512", "--size", "240x192"}},
+        SceneCase{"blended", {"gltf/AlphaBlendModeTest.glb", "--floor", "--ldc", "512", "--size", "240x192"}},
+        SceneCase{"coats", {"gltf/ClearCoatTest.glb", "--ldc", "512", "--size", "240x192"}}),
     name_of);
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
                          testing::Values(SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}},

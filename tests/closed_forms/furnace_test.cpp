@@ -88,7 +88,7 @@ TEST_F(FurnaceTest, RoughBallIsAsBrightAtOneSampleAsAtMany) {
             EXPECT_TRUE(near(got, want, tolerance)) << spp << " samples: " << text(got) << ", expected " << text(want);
         }
     };
-    for (double roughness : {0.06, 0.25, 0.5, 0.75, 1.0}) {
+    for (double roughness : {0.06, 0.4, 1.0}) {
         SCOPED_TRACE(roughness);
         Material red = metal("red", {1, 0.2f, 0});
         red.roughness = float(roughness);
