@@ -175,7 +175,9 @@ void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
 }
 
 /// illum 4, 6, 7 and 9 are the glasses; 6 and 7 bend the ray (a body), 4 and 9 let it through straight (a sheet). What
-/// is dissolved otherwise is a sheet, too, that shows its own colour by the one share and what is behind by the other.
+/// is dissolved otherwise covers what is behind it by its opacity. Where Tf tints that, or the colour's texture has an
+/// alpha that does not count, it is a sheet of glass that shows its own colour by the one share and what is behind by
+/// the other.
 void MtlConverter::read_transmission(const MtlMaterial& from, float opacity, Material& out) {
     const bool is_glass = from.illum == 4 || from.illum == 6 || from.illum == 7 || from.illum == 9;
     glm::vec3 filter = glm::min(from.filter.value_or(glm::vec3(1)), glm::vec3(1));
@@ -187,6 +189,13 @@ void MtlConverter::read_transmission(const MtlMaterial& from, float opacity, Mat
     if (largest_channel(filter) == 0) {
         ++tally["{} black transmission filter{|s} (Tf) ignored"];
         filter = glm::vec3(1);
+    }
+    const MaterialTexture& texture = out.base_color_texture;
+    const bool is_whole = !texture || is_opaque(scene_.textures[size_t(texture.texture)]);
+    if (!is_glass && opacity > 0 && filter == glm::vec3(1) && is_whole) {
+        out.alpha = opacity;
+        out.blended = true;
+        return;
     }
     const glm::vec3 own = from.diffuse.value_or(out.base_color_texture ? glm::vec3(1) : default_color);
     const float through = opacity < 1 ? 1 - opacity : 1;

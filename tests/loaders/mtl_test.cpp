@@ -85,14 +85,17 @@ TEST(Mtl, DissolveMixesTheSurfaceWithWhatIsBehind) {
         EXPECT_EQ(material_of(load(opaque)).transmission, 0) << opaque;
     for (const char* most : {"d 0.9\n", "Tr 0.1\n", "d -halo 0.9\n", "d .9\nTf 1 1 1\n"}) {
         const Material m = material_of(load(most));
-        EXPECT_NEAR(m.transmission, 0.1f, 1e-6) << most;
-        // Red's own share and what is behind it, under even light: 0.9 red and 0.1 white.
-        expect_color(m.base_color, {1, 0.1f, 0.1f});
-        EXPECT_EQ(m.thickness, 0);
+        EXPECT_TRUE(m.blended) << most;
+        EXPECT_NEAR(m.alpha, 0.9f, 1e-6) << most;
+        EXPECT_EQ(m.transmission, 0) << most;
+        expect_color(m.base_color, {1, 0, 0});
     }
+    // What Tf tints is a sheet of glass. Red's own share and what is behind it, under even light: half red, half green.
     const Material tinted = material_of(load("d 0.5\nTf 0.2 0.9 0.2\n"));
     expect_color(tinted.base_color, {0.6f, 0.45f, 0.1f});
     EXPECT_NEAR(tinted.transmission, 0.5f, 1e-6);
+    EXPECT_EQ(tinted.thickness, 0);
+    EXPECT_FALSE(tinted.blended);
     const Scene clear = load("d 0\n");
     EXPECT_EQ(material_of(clear).transmission, 1);
     EXPECT_EQ(material_of(clear).base_color, glm::vec3(1));
