@@ -81,8 +81,8 @@ TEST(Obj, Materials) {
     EXPECT_FLOAT_EQ(glass.ior, 1.33f);
     EXPECT_GT(glass.thickness, 0);
     EXPECT_EQ(glass.base_color, glm::vec3(0.5f, 0.75f, 1));
-    EXPECT_FLOAT_EQ(material("sheet").transmission, 0.75f);
-    EXPECT_EQ(material("sheet").thickness, 0);
+    EXPECT_TRUE(material("sheet").blended);
+    EXPECT_EQ(material("sheet").alpha, 0.25f);
     EXPECT_FLOAT_EQ(material("pbr").metallic, 0.5f);
     EXPECT_FLOAT_EQ(material("pbr").roughness, 0.25f);
     const Primitive& first = scene.meshes[0].primitives[0];
