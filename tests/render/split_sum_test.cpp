@@ -27,8 +27,8 @@ double cosine_of(int column) {
 }
 
 TEST(SplitSum, EntriesAreMeansOverMicrofacets) {
-    for (int row = 5; row < SPLIT_SUM_SIDE; row += 2)
-        for (int column = 0; column < SPLIT_SUM_SIDE; column += 3)
+    for (int row = 5; row < SPLIT_SUM_SIDE; row += 4)
+        for (int column = 0; column < SPLIT_SUM_SIDE; column += 5)
             for (size_t k = 0; k < 4; k++) {
                 const double want = ggx_mean(cosine_of(column), roughness_of(row),
                                              [&](double c) { return std::pow(1 - c, kExponents[k]); });
