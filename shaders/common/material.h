@@ -57,11 +57,11 @@ SHARED_SIZE(GpuMaterial, 176);
 #define MATERIAL_TEXTURED 32u     // by more than a base colour and a normal
 #define MATERIAL_BLENDED 64u      // covers what is behind it by its alpha only
 /// Of all materials of a scene:
-#define MATERIALS_BLENDED 8u  // some are MATERIAL_BLENDED
-#define MATERIALS_COATED 16u  // some have a clear coat
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
 #define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
 #define MATERIALS_FILTERED 4u   // some have textures whose filter depends on how large they are seen
+#define MATERIALS_BLENDED 8u    // some are MATERIAL_BLENDED
+#define MATERIALS_COATED 16u    // some have a clear coat
 
 /// A texture as materials use it.
 struct GpuTexture {

@@ -69,7 +69,7 @@ void main() {
         radiance += reflection.weight * seen(reflection, m.roughness);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).
-        const bool coat = coated && refraction.effect == EFFECT_REFLECTION;
+        const bool coat = isCoat(refraction);
         const float bent = blended && s.alpha < 1.0 ? 0.0 : m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0);
         vec3 through = refraction.weight;
         if (refraction.traced && !coat && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));

@@ -44,7 +44,7 @@ void main() {
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
     vec3 shown = vec3(0);
-    if (has_unlit) shown = unlitShare(at, finite && (node.flags & NODE_UNLIT) != 0u ? node.radiance : vec3(0), sum.rgb)  // not what is seen through it
-            ;
+    // Not what is seen through it.
+    if (has_unlit) shown = unlitShare(at, finite && (node.flags & NODE_UNLIT) != 0u ? node.radiance : vec3(0), sum.rgb);
     if (params.encodes != 0u) encoded[at] = encode(sum.rgb, shown, params.scale, params.share, params.curve);
 }

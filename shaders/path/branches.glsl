@@ -15,9 +15,15 @@ struct Branch {
     bool traced;      ///< or looked up in a cube map
     float blur;       ///< roughness for the environment, if not traced
     uint cone;        ///< of the new ray
-    uint effect;      ///< EFFECT_* that it is
+    uint effect;      ///< EFFECT_*: a clear coat's is a reflection in the refraction's place
 };
 const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u);
+
+/// Is a surface's second branch what its clear coat mirrors?
+bool isCoat(Branch second) { return coated && second.effect == EFFECT_REFLECTION; }
+
+/// A new ray's cone, where anything is filtered by it.
+uint keptCone(vec2 cone) { return filtered ? packCone(cone) : 0u; }
 
 // Defined by the shader that includes this.
 /// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
@@ -32,10 +38,11 @@ void decide(inout Branch branch, RayState state, bool passes);
 /// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin glass sends its
 /// light the same way.
 void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 radiance, inout Branch reflection, inout Branch refraction) {
+    if (!blended || s.alpha >= 1.0) return;
     radiance *= s.alpha;
     reflection.weight *= s.alpha;
     const uint passed = (state.medium & RAY_PASSES) == RAY_PASSES ? state.medium : state.medium + RAY_PASSED;
-    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, filtered ? packCone(cone) : 0u, EFFECT_REFRACTION);
+    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, keptCone(cone), EFFECT_REFRACTION);
     decide(refraction, state, true);
 }
 
@@ -72,7 +79,7 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
         weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * (above > 0.0 ? ggxMasking(above, alpha) : 0.0);
     }
     Branch coat = Branch(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(mirror ? 0u : RAY_SEES_SUN), false, 0.0,
-                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u, EFFECT_REFLECTION);
+                        keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
     decide(coat, state, false);
     radiance += fade(coat, m.coat_roughness, 0.0);
     coat.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
@@ -89,7 +96,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     vec3 radiance = m.emissive;
     if ((m.flags & MATERIAL_UNLIT) != 0u) {
         radiance = s.base_color;
-        if (blended && s.alpha < 1.0) passBeside(s, incoming, state, cone, radiance, reflection, refraction);
+        passBeside(s, incoming, state, cone, radiance, reflection, refraction);
         return radiance;
     }
     const vec3 view = -incoming;
@@ -119,7 +126,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
             weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
     }
     reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0,
-                        filtered ? packCone(coneReflected(cone, s.curvature)) : 0u, EFFECT_REFLECTION);
+                        keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
     decide(reflection, state, false);
     if (!transparent) radiance += fade(reflection, m.roughness, m.metallic);
     reflection.blur = samplesMicrofacets() ? 0.0 : m.roughness;
@@ -132,15 +139,15 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
         else
             passes = refractRay(incoming, h, face.eta, direction);
         if (passes) {
-            const vec3 through = (1.0 - dielectric) * (1.0 - m.metallic) * m.transmission * s.base_color;
+            const vec3 through = (1.0 - dielectric) * transmissionTint(m, s.base_color);
             const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & RAY_PASSES);
             const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
-            refraction = Branch(through, direction, inside | sun, false, 0.0, filtered ? packCone(beyond) : 0u, EFFECT_REFRACTION);
+            refraction = Branch(through, direction, inside | sun, false, 0.0, keptCone(beyond), EFFECT_REFRACTION);
             decide(refraction, state, false);
         }
     }
     if (coated && m.clearcoat > 0.0) addCoat(s, m, incoming, state, cone, transparent || s.alpha < 1.0, radiance, reflection, refraction);
-    if (blended && s.alpha < 1.0) passBeside(s, incoming, state, cone, radiance, reflection, refraction);
+    passBeside(s, incoming, state, cone, radiance, reflection, refraction);
     return radiance;
 }
 

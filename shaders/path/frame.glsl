@@ -52,9 +52,10 @@ vec3 placedNormal(mat3 cofactors, vec3 n) {
 
 vec3 directionOr(vec3 v, vec3 otherwise) { return dot(v, v) > 0.0 ? normalize(v) : otherwise; }
 
-/// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there are no tangents. As
+/// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there is no texture, or no tangents. As
 /// MikkTSpace has it, nothing is made unit before the sum.
 vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
+    if (!bendsNormals(material, use)) return otherwise;
     const vec4 ta = tangentOf(material, place.corners.x), tb = tangentOf(material, place.corners.y), tc = tangentOf(material, place.corners.z);
     const vec3 weights = place.weights;
     vec3 a = ta.xyz, b = tb.xyz, c = tc.xyz;
@@ -120,15 +121,13 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
         if (size > 0.0) place.seen = width * width / (max(abs(dot(s.geometric, direction)), LEAST_COSINE) * size);
         s.curvature = side * curvatureOf(a, b, c, na, nb, nc);
     }
-    vec3 bent = normal;
     s.material = triangle_materials[triangle];
-    if (bendsNormals(s.material, TEXTURE_NORMAL)) bent = bentNormal(s.material, TEXTURE_NORMAL, place, linear, turned, interpolated, normal);
+    const vec3 bent = bentNormal(s.material, TEXTURE_NORMAL, place, linear, turned, interpolated, normal);
     s.normal = visibleNormal(bent * side, s.geometric, -direction);
     s.coat_normal = s.normal;
     if (isCoated(s.material)) {
-        bent = normal;
-        if (bendsNormals(s.material, TEXTURE_COAT_NORMAL)) bent = bentNormal(s.material, TEXTURE_COAT_NORMAL, place, linear, turned, interpolated, normal);
-        s.coat_normal = visibleNormal(bent * side, s.geometric, -direction);
+        const vec3 coat = bentNormal(s.material, TEXTURE_COAT_NORMAL, place, linear, turned, interpolated, normal);
+        s.coat_normal = visibleNormal(coat * side, s.geometric, -direction);
     }
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     const vec4 color = baseColor(s.material, place);

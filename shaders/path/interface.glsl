@@ -8,6 +8,9 @@
 /// Does light pass through the material?
 bool transmits(Material m) { return m.transmission > 0.0 && m.metallic < 1.0; }
 
+/// What the light that is not reflected is multiplied by on its way through.
+vec3 transmissionTint(Material m, vec3 base_color) { return (1.0 - m.metallic) * m.transmission * base_color; }
+
 /// Is a ray that meets the material's surface inside of its volume? Volumes are left where the ray meets their back; opaque and
 /// thin surfaces are the same from both sides.
 bool leavesVolume(Material m, bool front) { return transmits(m) && (m.flags & MATERIAL_THIN) == 0u && !front; }

@@ -30,10 +30,7 @@ struct MediaGroup {
     vec3 tints[WALLS_TOGETHER];
 };
 
-vec3 mediaTint(Surface s) {
-    const Material m = materialOf(s);
-    return (1.0 - m.metallic) * m.transmission * s.base_color;
-}
+vec3 mediaTint(Surface s) { return transmissionTint(materialOf(s), s.base_color); }
 
 /// How far along a ray walls count as one with the wall `s`, which it meets at `t`.
 float mediaReach(Surface s, float t, vec3 direction) {

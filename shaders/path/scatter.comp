@@ -76,14 +76,16 @@ bool isLast(uint medium, bool passes) {
     return params.level >= min(frame[0].last_level, frame[0].bounces + (medium & RAY_PASSES) / RAY_PASSED);
 }
 
-void decide(inout Branch branch, RayState state, bool passes) {
-    branch.traced = (frame[0].effects & branch.effect) != 0u && !isLast(state.medium, passes) && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
+/// Is it bright enough, and its effect on?
+bool isWanted(Branch branch, RayState state) {
+    return (frame[0].effects & branch.effect) != 0u && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
+
+void decide(inout Branch branch, RayState state, bool passes) { branch.traced = isWanted(branch, state) && !isLast(state.medium, passes); }
 
 /// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
 bool isCut(Branch branch, RayState state, bool passes) {
-    return frame[0].bounces > 0u && params.level > 0u && isLast(state.medium, passes) && (frame[0].effects & branch.effect) != 0u &&
-           largest(branch.weight * state.weight) >= LEAST_WEIGHT;
+    return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state.medium, passes);
 }
 
 void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
@@ -247,7 +249,8 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     state.weight *= c.lost;
     c.path_weight = state.weight;
     c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, c.reflection, c.refraction);
-    if (c.refraction.effect == EFFECT_REFRACTION) c.refraction.weight *= beside;
+    const bool coat = isCoat(c.refraction);
+    if (!coat) c.refraction.weight *= beside;
     // What is not traced sees the environment.
     if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
     if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, c.refraction.blur);
@@ -258,7 +261,6 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     else
         c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
     c.node.radiance *= c.lost;
-    const bool coat = coated && c.refraction.effect == EFFECT_REFLECTION;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
@@ -277,8 +279,7 @@ void emitBranches(uint i, Scattering c, uint seed) {
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        const bool mirrored = coated && c.refraction.effect == EFFECT_REFLECTION;
-        emitRay(children.child1, c.refraction, mirrored ? c.before : c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+        emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
     }
     branches[i] = children;
 }

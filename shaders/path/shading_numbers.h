@@ -67,7 +67,7 @@
 
 // What random numbers are for.
 #define RANDOM_MICROFACET 1
-#define RANDOM_COAT 3
 #define RANDOM_SKY 2
+#define RANDOM_COAT 3
 
 #endif

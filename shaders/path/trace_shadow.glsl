@@ -37,9 +37,9 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);
         const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
         const vec3 reflected = interfaceReflectance(m, face, clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
-        share *= mix(vec3(1), (1.0 - reflected) * mediaTint(s), s.alpha) * meeting.at.beside;
+        share *= mix(vec3(1), (1.0 - reflected) * transmissionTint(m, s.base_color), s.alpha) * meeting.at.beside;
         const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.at.before);
-        if (medium != MEDIUM_NONE) share *= exp(-materialAbsorption(medium) * (layer == 0u ? hit.t : hit.t - ray.tmin));
+        share *= transmittance(medium, layer == 0u ? hit.t : hit.t - ray.tmin);
         if (largest(share) < LEAST_WEIGHT) return vec3(0);
         stack = meeting.wall ? meeting.at.behind : meeting.at.before;
         ray.tmin = meeting.beyond;
@@ -64,7 +64,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u || !transmits(m);
         const vec3 reflected = wallReflectance(m, clamp(-dot(ray.direction, s.normal), 0.0, 1.0), leavesVolume(m, s.front));
-        share *= mix(vec3(1), (1.0 - reflected) * (1.0 - m.metallic) * m.transmission * s.base_color, s.alpha);
+        share *= mix(vec3(1), (1.0 - reflected) * transmissionTint(m, s.base_color), s.alpha);
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!thin && !s.front) share *= exp(-m.absorption * (hit.t - since));
         if (!thin) since = hit.t;

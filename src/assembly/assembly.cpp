@@ -8,6 +8,7 @@
 #include "assembly/grouping.h"
 #include "base/error.h"
 #include "scene/deform.h"
+#include "scene/normals.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -225,12 +226,7 @@ class Assembler {
         out_.normals.insert(out_.normals.end(), vertices.normals.begin(), vertices.normals.end());
         out_.uvs.insert(out_.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
         out_.uvs.resize(out_.positions.size(), glm::vec2(0));
-        for (size_t set = 0; set < out_.more_uvs.size(); set++) {
-            std::vector<glm::vec2>& all = out_.more_uvs[set];
-            if (set < primitive.more_uvs.size())
-                all.insert(all.end(), primitive.more_uvs[set].begin(), primitive.more_uvs[set].end());
-            all.resize(out_.positions.size(), glm::vec2(0));
-        }
+        append_uv_sets(out_.more_uvs, primitive, out_.positions.size());
         out_.tangents.insert(out_.tangents.end(), vertices.tangents.begin(), vertices.tangents.end());
         if (has_tangents_) out_.tangents.resize(out_.positions.size(), glm::vec4(0));
         if (has_colors_) {

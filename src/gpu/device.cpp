@@ -247,6 +247,7 @@ void Device::create_dummies() {
     }
     dummy_image_ = std::make_unique<Image2D>(*this, "dummy", 1, 1, VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_SAMPLED_BIT,
                                              VK_IMAGE_ASPECT_COLOR_BIT, 1, true);
+    // An image counts its memory; nothing else has any yet.
     held_.clear();
     at_peak_.clear();
     allocated_ = peak_allocated_ = 0;

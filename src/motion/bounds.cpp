@@ -7,6 +7,7 @@
 #include "motion/motion.h"
 #include "path/shading_numbers.h"
 #include "scene/deform.h"
+#include "scene/sampling.h"
 
 namespace peelray {
 namespace {
@@ -116,10 +117,7 @@ bool leaves_something(const Scene& scene, const Primitive& primitive) {
     for (const glm::vec4& color : primitive.colors) corners = std::max(corners, color.w);
     const double most = double(material.alpha) * double(corners);
     if (most < least || !material.base_color_texture) return most >= least;
-    const Texture& texture = scene.textures[size_t(material.base_color_texture.texture)];
-    const auto is_enough = [&](double alpha) { return most * alpha >= least; };
-    return std::ranges::any_of(texture.texels, [&](uint32_t texel) { return is_enough((texel >> 24) / 255.0); }) ||
-           std::ranges::any_of(texture.deep_texels, [&](uint64_t texel) { return is_enough((texel >> 48) / 65535.0); });
+    return most * greatest_value(scene.textures[size_t(material.base_color_texture.texture)], 3) >= least;
 }
 
 /// The primitives that count, mesh by mesh.

@@ -6,13 +6,6 @@
 #include "path/shading_numbers.h"
 
 namespace peelray {
-namespace {
-
-glm::dvec3 tint_of(const Surface& surface, const Optics& m) {
-    return (1 - m.metallic) * m.transmission * surface.base_color;
-}
-
-}  // namespace
 
 uint32_t Media::depth(uint32_t material) const {
     return uint32_t(std::count(entered_.begin(), entered_.end(), material));
@@ -108,8 +101,7 @@ size_t MediaWalk::meet(const std::vector<Wall>& walls, Meeting& meeting) const {
         const uint32_t material = walls[i].surface.material;
         // The wall of a body within another one of the same medium has no colour.
         const bool inner = assumed.holds(material) && behind.holds(material);
-        if (!inner && (i != owner || meeting.from == meeting.to))
-            meeting.beside *= tint_of(walls[i].surface, walls[i].surface.optics);
+        if (!inner && (i != owner || meeting.from == meeting.to)) meeting.beside *= walls[i].surface.optics.tint();
     }
     meeting.behind = std::move(behind);
     return owner;

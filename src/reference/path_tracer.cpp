@@ -119,7 +119,7 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.triangle[at] = float(hit.triangle);
     a.material[at] = float(s.material);
     a.normal[at] = glm::vec4(s.normal, 0);
-    a.albedo[at] = glm::vec4(s.base_color, 1);
+    a.albedo[at] = glm::vec4(s.optics.base_color, 1);
     a.position[at] = glm::vec4(s.position, 1);
     const glm::dvec3 d = glm::reflect(glm::normalize(path.direction), s.normal);
     double t = std::numeric_limits<double>::infinity();

@@ -63,8 +63,8 @@ glm::dvec3 Shader::reflectance(const Surface& s, const glm::dvec3& view, const g
     glm::dvec3 share(0);
     if (n_l > 0) {
         const glm::dvec3 dielectric = m.face_reflectance(v_h, m.leaves(s.front));
-        share = (1 - m.metallic) * (1 - m.transmission) * (1 - largest(dielectric)) * s.base_color * (n_l / pi);
-        const glm::dvec3 fresnel = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, v_h), m.metallic);
+        share = (1 - m.metallic) * (1 - m.transmission) * (1 - largest(dielectric)) * m.base_color * (n_l / pi);
+        const glm::dvec3 fresnel = glm::mix(dielectric, fresnel_schlick(m.base_color, 1, v_h), m.metallic);
         share += fresnel * highlight(s.normal, m.roughness, view, to_light);
     }
     if (m.clearcoat == 0) return share;
@@ -186,7 +186,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     const PictureSettings& settings = context_.settings;
     Scattered out;
     if (m.unlit) {
-        out.radiance = s.base_color;
+        out.radiance = m.base_color;
         if (m.alpha < 1) pass_beside(s, path, meeting, out);
         return out;
     }
@@ -199,20 +199,18 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
 
     Branch& reflection = out.reflection;
     const glm::dvec3 reflected = path.direction - 2 * glm::dot(path.direction, h) * h;
-    reflection.weight = glm::mix(dielectric, fresnel_schlick(s.base_color, 1, cosine), m.metallic);
+    reflection.weight = glm::mix(dielectric, fresnel_schlick(m.base_color, 1, cosine), m.metallic);
     if (!mirror && settings.spp > 1) {
         const double above = glm::dot(reflected, s.normal);
         reflection.weight *= above > 0 ? ggx_masking(above, alpha) : 0;
     } else if (!mirror) {
         const Albedos::Means means = context_.albedos.at(s, cosine);
         reflection.weight = transmits ? reflection.weight * (means.normal + means.grazing)
-                                      : glm::mix(means.dielectric, means.metal(s.base_color), m.metallic);
+                                      : glm::mix(means.dielectric, means.metal(m.base_color), m.metallic);
     }
     reflection.direction = above_surface(reflected, s.geometric);
     reflection.media = meeting.before;
-    // The mirrored direction turns twice as far as the normal, the refracted one as Snell's law has it near the normal.
-    const double turn = s.curvature * path.cone.width;
-    reflection.cone = {path.cone.width, path.cone.spread + 2 * turn};
+    reflection.cone = path.cone.reflected(s.curvature);
     reflection.sees_sun = mirror && path.sees_sun;
     reflection.traced = is_traced(reflection, path);
     reflection.blur = settings.spp > 1 ? 0 : m.roughness;
@@ -224,11 +222,10 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
                                       : refract_ray(path.direction, h, relative_index(meeting, s));
     if (direction) {
         Branch& refraction = out.refraction;
-        refraction.weight = (1.0 - dielectric) * (1 - m.metallic) * m.transmission * s.base_color;
+        refraction.weight = (1.0 - dielectric) * m.tint();
         refraction.direction = *direction;
         refraction.media = meeting.behind;
-        refraction.cone = path.cone;
-        if (!m.thin) refraction.cone.spread = (path.cone.spread + turn) / relative_index(meeting, s) - turn;
+        refraction.cone = m.thin ? path.cone : path.cone.refracted(s.curvature, relative_index(meeting, s));
         refraction.sees_sun = mirror && path.sees_sun;
         refraction.mirrors = false;
         refraction.traced = is_traced(refraction, path);
@@ -277,7 +274,7 @@ void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting
     }
     coat.direction = above_surface(reflected, s.geometric);
     coat.media = meeting.before;
-    coat.cone = {path.cone.width, path.cone.spread + 2 * s.curvature * path.cone.width};
+    coat.cone = path.cone.reflected(s.curvature);
     coat.sees_sun = mirror && path.sees_sun;
     coat.traced = is_traced(coat, path);
     out.radiance += fade(coat, m.coat_roughness, 0);
@@ -331,7 +328,7 @@ glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path&
 
 glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& path) {
     const Optics& m = s.optics;
-    glm::dvec3 diffuse = (1 - m.metallic) * (1 - m.transmission) * s.base_color / pi;
+    glm::dvec3 diffuse = (1 - m.metallic) * (1 - m.transmission) * m.base_color / pi;
     if (diffuse == glm::dvec3(0)) return diffuse;
     // What the surface mirrors is not available for diffuse light: the share that scatter() gives to the reflection.
     const double cosine = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0);
@@ -365,8 +362,7 @@ glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& directi
         const Optics& m = s.optics;
         if (!m.transmits() && m.alpha == 1) return glm::dvec3(0);
         const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        const glm::dvec3 tint =
-            (1.0 - reflectance_at(meeting, s, cosine)) * (1 - m.metallic) * m.transmission * s.base_color;
+        const glm::dvec3 tint = (1.0 - reflectance_at(meeting, s, cosine)) * m.tint();
         share *= glm::mix(glm::dvec3(1), tint, m.alpha) * meeting.beside;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         share *= transmittance(meeting.wall ? meeting.from : meeting.before.counting(context_.media), hit.t - from);

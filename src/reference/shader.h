@@ -31,6 +31,12 @@ struct Cone {
     double width = 0;   ///< at the ray's start, world units; < 0: behind a focus
     double spread = 0;  ///< how much wider it gets per world unit
     double width_at(double t) const { return width + t * spread; }
+    /// After a surface of this curvature: the mirrored direction turns twice as far as the normal, the refracted one as
+    /// Snell's law has it near the normal.
+    Cone reflected(double curvature) const { return {width, spread + 2 * curvature * width}; }
+    Cone refracted(double curvature, double eta) const {
+        return {width, (spread + curvature * width) / eta - curvature * width};
+    }
 };
 
 /// Follows the rays of one sample of one pixel.

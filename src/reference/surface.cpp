@@ -21,8 +21,8 @@ Optics::Optics(const Material& m)
       thin(m.thickness <= 0),
       unlit(m.unlit) {
     // KHR_materials_ior: an index of 0 stands for an infinite one, which reflects all. KHR_materials_specular.
-    const double normal = m.ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2);
-    f0 = glm::min(normal * glm::dvec3(m.specular_color), 1.0) * double(m.specular);
+    normal = m.ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2);
+    f0 = glm::min(normal * glm::dvec3(m.specular_color), 1.0) * f90;
     // KHR_materials_volume: white becomes attenuation_color after attenuation_distance.
     if (std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
         absorption =
@@ -104,7 +104,6 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
         s.shadow_start += weights[i] * (stray ? s.position : s.position - below * corner_normal);
     }
     s.optics = evaluate(s.material, place);
-    s.base_color = s.optics.base_color;
     return s;
 }
 
@@ -171,8 +170,7 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
     o.coat_roughness = double(m.coat_roughness) * number(m.coat_roughness_texture, place);
     if (m.specular_texture || m.specular_color_texture) {
         o.f90 *= number(m.specular_texture, place);
-        const double normal = m.ior == 0 ? 1 : std::pow((o.ior - 1) / (o.ior + 1), 2);
-        o.f0 = glm::min(normal * glm::dvec3(m.specular_color) * color(m.specular_color_texture, place), 1.0) * o.f90;
+        o.f0 = glm::min(o.normal * glm::dvec3(m.specular_color) * color(m.specular_color_texture, place), 1.0) * o.f90;
         o.specified = true;
     }
     o.occlusion = 1 + double(m.occlusion_strength) * (number(m.occlusion_texture, place) - 1);

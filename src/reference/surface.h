@@ -20,6 +20,7 @@ struct Optics {
     double ior = 1;          ///< ≥ 1
     bool specified = false;  ///< the dielectric part's reflectance is stated: Schlick's, from f0 to f90; else it
                              ///< follows from ior
+    double normal = 0;       ///< reflectance at normal incidence by the index alone
     glm::dvec3 f0{0};
     double f90 = 1;
     double occlusion = 1;  ///< share of the sky's diffuse light that arrives
@@ -30,6 +31,8 @@ struct Optics {
     Optics() = default;
     explicit Optics(const Material& material);
     bool transmits() const { return transmission > 0 && metallic < 1; }
+    /// What the light that is not reflected is multiplied by on its way through.
+    glm::dvec3 tint() const { return (1 - metallic) * transmission * base_color; }
     /// Is a ray that meets the surface from its `front` or back inside of the volume?
     bool leaves(bool front) const { return transmits() && !thin && !front; }
     /// Of one face of the dielectric part; `cosine` ≥ 0 on the incoming side, `leaving`: from inside.
@@ -45,10 +48,9 @@ struct Surface {
     glm::dvec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
     glm::dvec3 coat_normal;   ///< of a clear coat
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
-    glm::dvec3 base_color;
-    double extent;  ///< the largest coordinate of the triangle
-    double error;   ///< bound on the position's rounding error, world units
-    bool front;     ///< the ray comes from the side that the normals point to
+    double extent;            ///< the largest coordinate of the triangle
+    double error;             ///< bound on the position's rounding error, world units
+    bool front;               ///< the ray comes from the side that the normals point to
     uint32_t material;
     Optics optics;     ///< the material here
     double curvature;  ///< how much the normal turns per world unit; > 0: the ray meets a bulge

@@ -71,8 +71,9 @@ class TextureStore {
   public:
     explicit TextureStore(const Scene& scene) : scene_(scene) {}
 
-    /// An entry of the table for what a material uses; -1: it uses none. `is_data`: not encoded as sRGB.
-    int add(const MaterialTexture& use, bool is_data, uint64_t vertices) {
+    /// An entry of the table for what a material uses; -1: it uses none. `is_data`: not encoded as sRGB; `levels`: with
+    /// those that serve where the texture is made smaller.
+    int add(const MaterialTexture& use, bool is_data, bool levels, uint64_t vertices) {
         if (!use) return -1;
         const Texture& texture = scene_.textures[size_t(use.texture)];
         const auto [first, added] = first_.try_emplace(use.texture, 0);
@@ -81,7 +82,8 @@ class TextureStore {
         entry.flags = uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2 | (texture.nearest ? USE_NEAREST : 0u) |
                       (is_data ? USE_DATA : 0u) | (texture.deep_texels.empty() ? 0u : USE_DEEP) |
                       (texture.min_nearest ? USE_MIN_NEAREST : 0u);
-        if (texture.mipmaps != Texture::Mipmaps::none && texture.width * uint64_t(texture.height) > 1) {
+        levels &= texture.mipmaps != Texture::Mipmaps::none && texture.width * uint64_t(texture.height) > 1;
+        if (levels) {
             const auto [smaller, made] = smaller_.try_emplace({use.texture, is_data}, 0);
             if (made) smaller->second = keep_levels(texture, is_data);
             entry.smaller = smaller->second;
@@ -104,8 +106,7 @@ class TextureStore {
         if (row_count_ > most_rows(device))
             fail(
                 "the textures and their smaller levels take {} million texels, more than the {} million that the "
-                "device '{}' holds: make them "
-                "smaller",
+                "device '{}' holds: make them smaller",
                 row_count_ * width / 1'000'000, most_rows(device) * width / 1'000'000, device.info().name);
         Image2D image(device, "textures", uint32_t(width), uint32_t(std::min(row_count_, layer_rows)),
                       VK_FORMAT_R32_UINT, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
@@ -176,9 +177,15 @@ Buffer upload_uvs(Device& device, Commands& commands, const Assembly& assembly) 
 
 }  // namespace
 
-BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly) {
+std::vector<bool> used_materials(const Scene& scene, const Assembly& assembly) {
     std::vector<bool> used(scene.materials.size(), false);
     for (uint32_t material : assembly.materials) used[material] = true;
+    return used;
+}
+
+BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly,
+                                    const std::vector<bool>& used, MaterialsFor purpose) {
+    const bool shades = purpose == MaterialsFor::shading;
     BaseColorBuffers out;
     out.first_tangent = uint32_t(assembly.uvs.size() * (1 + assembly.more_uvs.size()));
     TextureStore textures(scene);
@@ -189,8 +196,9 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
         m.first_tangent = out.first_tangent;
         for (int k = 0; k < TEXTURE_USES; k++) {
             const MaterialTexture& use = material.*material_textures[size_t(k)];
-            m.textures[k] =
-                used[i] ? textures.add(use, !is_color(material_textures[size_t(k)]), assembly.uvs.size()) : -1;
+            const bool read = used[i] && (shades || (k == TEXTURE_BASE_COLOR && material.alpha_cutoff > 0));
+            const bool is_data = !is_color(material_textures[size_t(k)]);
+            m.textures[k] = read ? textures.add(use, is_data, shades, assembly.uvs.size()) : -1;
             m.channels |= use.channel << 2 * k;
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;

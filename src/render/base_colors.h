@@ -14,6 +14,16 @@ Buffer upload(Device& device, Commands& commands, const char* name, const std::v
     return buffer;
 }
 
-BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly);
+/// Of each of the scene's materials: does a triangle have it?
+std::vector<bool> used_materials(const Scene& scene, const Assembly& assembly);
+
+enum class MaterialsFor {
+    shading,
+    hits,  ///< which of them count: sides and alpha tests, which read the largest level of few textures
+};
+
+/// `used`: see used_materials().
+BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Scene& scene, const Assembly& assembly,
+                                    const std::vector<bool>& used, MaterialsFor purpose);
 
 }  // namespace peelray

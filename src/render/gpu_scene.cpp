@@ -83,13 +83,12 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     }
     draw_table = upload(device, commands, "draws", table);
     normals = upload(device, commands, "vertex normals", assembly.normals);
-    base_colors = upload_base_colors(device, commands, scene, assembly);
+    const std::vector<bool> used = used_materials(scene, assembly);
+    base_colors = upload_base_colors(device, commands, scene, assembly, used, MaterialsFor::shading);
     if (has_masks(scene, assembly.materials)) triangles.masks = &base_colors;
     if (has_single_sided(scene, assembly.materials)) triangles.sides = &base_colors;
     triangle_ids = upload(device, commands, "places of triangles in the file", assembly.ids);
     triangle_objects = upload(device, commands, "objects of the triangles", assembly.objects);
-    std::vector<bool> used(scene.materials.size(), false);
-    for (uint32_t material : assembly.materials) used[material] = true;
     for (size_t i = 0; i < used.size(); i++) {
         has_glass |= used[i] && lets_through(scene.materials[i]);
         splits |= used[i] && (transmits(scene.materials[i]) || scene.materials[i].clearcoat > 0);

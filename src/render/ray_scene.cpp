@@ -16,7 +16,9 @@ RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, con
       instances_(device, instance_infos(assembly)) {
     Commands commands(device);
     const bool masked = has_masks(scene, assembly.materials), culled = has_single_sided(scene, assembly.materials);
-    if (masked || culled) base_colors_ = upload_base_colors(device, commands, scene, assembly);
+    if (masked || culled)
+        base_colors_ =
+            upload_base_colors(device, commands, scene, assembly, used_materials(scene, assembly), MaterialsFor::hits);
     if (masked) triangles_.masks = &base_colors_;
     if (culled) triangles_.sides = &base_colors_;
     commands.upload(triangle_ids_, std::span<const uint32_t>(assembly.ids));

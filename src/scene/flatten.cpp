@@ -3,6 +3,7 @@
 
 #include "scene/deform.h"
 #include "scene/moment.h"
+#include "scene/normals.h"
 #include "scene/transform.h"
 
 namespace peelray {
@@ -36,12 +37,7 @@ void append_attributes(Geometry& out, const Primitive& primitive, const Totals& 
         out.uvs.resize(out.positions.size(), glm::vec2(0));
     else
         out.uvs.insert(out.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
-    for (size_t set = 0; set < totals.more_uvs; ++set) {
-        if (set < primitive.more_uvs.size())
-            out.more_uvs[set].insert(out.more_uvs[set].end(), primitive.more_uvs[set].begin(),
-                                     primitive.more_uvs[set].end());
-        out.more_uvs[set].resize(out.positions.size(), glm::vec2(0));
-    }
+    append_uv_sets(out.more_uvs, primitive, out.positions.size());
     if (totals.colors && primitive.colors.empty())
         out.colors.resize(out.positions.size(), glm::vec4(1));
     else

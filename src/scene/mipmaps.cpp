@@ -121,15 +121,19 @@ std::vector<Texture> make_mipmaps(const Texture& texture, bool is_data) {
     }
 }
 
-Mipmaps::Mipmaps(const Scene& scene) {
+Mipmaps::Mipmaps(const Scene& scene) : scene_(scene) {
     for (const Material& material : scene.materials)
-        for (const auto use : material_textures) {
-            const int texture = (material.*use).texture;
-            if (texture < 0) continue;
-            const Texture& source = scene.textures[size_t(texture)];
-            const auto [entry, added] = made_.try_emplace({texture, !is_color(use)});
-            if (added && source.mipmaps != Texture::Mipmaps::none) entry->second = make_mipmaps(source, !is_color(use));
-        }
+        for (const auto use : material_textures)
+            if (material.*use) made_.try_emplace({(material.*use).texture, !is_color(use)});
+}
+
+const std::vector<Texture>& Mipmaps::of(int texture, bool is_data) const {
+    Made& made = made_.at({texture, is_data});
+    std::call_once(made.once, [&] {
+        const Texture& source = scene_.textures[size_t(texture)];
+        if (source.mipmaps != Texture::Mipmaps::none) made.levels = make_mipmaps(source, is_data);
+    });
+    return made.levels;
 }
 
 LevelChoice choose_level(const Texture& texture, double lod) {

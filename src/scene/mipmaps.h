@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -14,16 +15,22 @@ namespace peelray {
 /// channel as the texture has.
 std::vector<Texture> make_mipmaps(const Texture& texture, bool is_data);
 
-/// The levels of the textures that a scene's materials use, made at once. The scene must outlive it.
+/// The levels of the textures that a scene's materials use, made when they are first asked for; threads may ask at
+/// once. The scene must outlive it.
 class Mipmaps {
   public:
     explicit Mipmaps(const Scene& scene);
 
     /// None of a texture that is not filtered by levels.
-    const std::vector<Texture>& of(int texture, bool is_data) const { return made_.at({texture, is_data}); }
+    const std::vector<Texture>& of(int texture, bool is_data) const;
 
   private:
-    std::map<std::pair<int, bool>, std::vector<Texture>> made_;
+    struct Made {
+        std::once_flag once;
+        std::vector<Texture> levels;
+    };
+    const Scene& scene_;
+    mutable std::map<std::pair<int, bool>, Made> made_;
 };
 
 /// Which levels of a texture serve a footprint of so many texels, and how far it is from the first to the second.

@@ -218,6 +218,14 @@ void take_vertices(Primitive& p, const std::vector<Completion>& parts, const std
 
 }  // namespace
 
+void append_uv_sets(std::vector<std::vector<glm::vec2>>& sets, const Primitive& primitive, size_t vertices) {
+    for (size_t i = 0; i < sets.size(); i++) {
+        if (i < primitive.more_uvs.size())
+            sets[i].insert(sets[i].end(), primitive.more_uvs[i].begin(), primitive.more_uvs[i].end());
+        sets[i].resize(vertices, glm::vec2(0));
+    }
+}
+
 void gather_vertices(Primitive& p, const std::vector<uint32_t>& from) {
     gather(p.positions, from);
     gather(p.normals, from);

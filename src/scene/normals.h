@@ -8,6 +8,10 @@ namespace peelray {
 /// Vertex i becomes a copy of vertex from[i]. What triangles name is the caller's.
 void gather_vertices(Primitive& primitive, const std::vector<uint32_t>& from);
 
+/// Appends a primitive's texture coordinates beyond the first set to as many sets, which then have `vertices` each: (0,
+/// 0) where it has none.
+void append_uv_sets(std::vector<std::vector<glm::vec2>>& sets, const Primitive& primitive, size_t vertices);
+
 /// One vertex per triangle corner with the triangle's own normal (what glTF asks for where normals are missing).
 void make_flat(Primitive& primitive);
 

@@ -64,4 +64,11 @@ double least_value(const Texture& texture, uint32_t channel) {
     return least;
 }
 
+double greatest_value(const Texture& texture, uint32_t channel) {
+    double greatest = 0;
+    const size_t count = std::max(texture.texels.size(), texture.deep_texels.size());
+    for (size_t i = 0; i < count && greatest < 1; i++) greatest = std::max(greatest, channel_of(texture, i, channel));
+    return greatest;
+}
+
 }  // namespace peelray

@@ -25,5 +25,7 @@ double sample_alpha(const Texture& texture, const glm::dvec2& uv);
 
 /// The least value of a channel; 1 for a texture without texels.
 double least_value(const Texture& texture, uint32_t channel);
+/// The greatest; 0 for a texture without texels.
+double greatest_value(const Texture& texture, uint32_t channel);
 
 }  // namespace peelray

@@ -16,13 +16,6 @@ Material blended(Material m, float alpha) {
     return m;
 }
 
-/// The square |x|, |y| ≤ 1 at a depth, facing +z.
-Primitive sheet(float z) {
-    Primitive quad = faces({{{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}});
-    quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    return quad;
-}
-
 std::function<std::optional<glm::dvec3>(const ViewRay&)> everywhere(const glm::dvec3& value) {
     return [=](const ViewRay&) { return value; };
 }
@@ -34,10 +27,10 @@ TEST_F(BlendTest, TheNearerCoversTheFarther) {
     for (const bool near_first : {false, true}) {
         SCOPED_TRACE(near_first);
         Stage stage;
-        if (near_first) stage.add(sheet(1), blended(unlit(kRed), 0.25f));
-        stage.add(sheet(-1), unlit(kBack));
-        stage.add(sheet(0), blended(unlit(kGreen), 0.5f));
-        if (!near_first) stage.add(sheet(1), blended(unlit(kRed), 0.25f));
+        if (near_first) stage.add(texture_square(1), blended(unlit(kRed), 0.25f));
+        stage.add(texture_square(-1), unlit(kBack));
+        stage.add(texture_square(0), blended(unlit(kGreen), 0.5f));
+        if (!near_first) stage.add(texture_square(1), blended(unlit(kRed), 0.25f));
         const glm::dvec3 want = 0.25 * kRed + 0.75 * (0.5 * kGreen + 0.5 * kBack);
         tally(render(stage, white, settings_for(kFront, 32)), kFront, 1e-4, everywhere(want)).expect(0, 1024);
     }
@@ -45,8 +38,8 @@ TEST_F(BlendTest, TheNearerCoversTheFarther) {
 
 TEST_F(BlendTest, LightOnASheetIsItsShare) {
     Stage stage;
-    stage.add(sheet(0), blended(lambert({0.6f, 0.6f, 0.6f}), 0.4f));
-    stage.add(sheet(-1), unlit(kBack));
+    stage.add(texture_square(0), blended(lambert({0.6f, 0.6f, 0.6f}), 0.4f));
+    stage.add(texture_square(-1), unlit(kBack));
     stage.sun({0, 0, -1}, glm::vec3(2));
     tally(render(stage, black, settings_for(kFront, 32)), kFront, 1e-4, everywhere(0.4 * 0.6 * 2 / kPi + 0.6 * kBack))
         .expect(0, 1024);
@@ -55,7 +48,7 @@ TEST_F(BlendTest, LightOnASheetIsItsShare) {
 TEST_F(BlendTest, MirrorsShowIt) {
     // A mirror at 45 degrees shows the sheet and what is behind it, which stand to the right.
     Stage stage;
-    stage.add(turned(sheet(0), -45, {0, 1, 0}), plane_mirror());
+    stage.add(turned(texture_square(0), -45, {0, 1, 0}), plane_mirror());
     const auto right = [](float distance) { return parallelogram({distance, -3, 3}, {0, 0, -6}, {0, 6, 0}); };
     for (auto [distance, material] : {std::pair(-2.0f, blended(unlit(kRed), 0.3f)), {-4.0f, unlit(kBack)}})
         for (const float side : {-1.0f, 1.0f}) {
@@ -82,8 +75,8 @@ TEST_F(BlendTest, ShadowsAreAsDeepAsWhatCovers) {
 TEST_F(BlendTest, PassingIsNoBounce) {
     // Through six sheets to a mirror, which takes the only bounce, and through six again.
     Stage stage;
-    for (int i = 0; i < 6; i++) stage.add(sheet(0.1f * float(i)), blended(unlit({0, 0, 0}), 0.1f));
-    Primitive mirror = sheet(-1);
+    for (int i = 0; i < 6; i++) stage.add(texture_square(0.1f * float(i)), blended(unlit({0, 0, 0}), 0.1f));
+    Primitive mirror = texture_square(-1);
     stage.add(mirror, plane_mirror());
     RenderSettings settings = settings_for(kFront, 16);
     settings.bounces = 1;
@@ -95,8 +88,8 @@ TEST_F(BlendTest, PassingIsNoBounce) {
 
 TEST_F(BlendTest, WithoutBouncesSheetsAreSeenThrough) {
     Stage stage;
-    stage.add(sheet(0), blended(unlit(kRed), 0.5f));
-    stage.add(sheet(-1), unlit(kBack));
+    stage.add(texture_square(0), blended(unlit(kRed), 0.5f));
+    stage.add(texture_square(-1), unlit(kBack));
     RenderSettings settings = settings_for(kFront, 16);
     settings.bounces = 0;
     settings.shadow = false;
@@ -107,16 +100,11 @@ TEST_F(BlendTest, AlphaIsFactorTimesTextureTimesVertex) {
     Stage stage;
     Material m = blended(unlit({1, 1, 1}), 0.8f);
     m.base_color_texture = 0;
-    Texture texture;
-    texture.width = 2;
-    texture.height = 1;
-    texture.texels = {0x80ffffffu, 0x33ffffffu};
-    texture.nearest = true;
-    stage.scene.textures = {texture};
-    Primitive quad = sheet(0);
+    stage.scene.textures = {two_texels({255, 255, 255, 128}, {255, 255, 255, 51})};
+    Primitive quad = texture_square(0);
     quad.colors.assign(4, glm::vec4(1, 0.5f, 1, 0.5f));
     stage.add(quad, m);
-    stage.add(sheet(-1), unlit(kBack));
+    stage.add(texture_square(-1), unlit(kBack));
     tally(render(stage, black, settings_for(kFront, 32)), kFront, 1e-4,
           [](const ViewRay& ray) -> std::optional<glm::dvec3> {
               if (std::abs(ray.origin.x) < 1e-3) return {};
@@ -130,18 +118,18 @@ TEST_F(BlendTest, ThinGlassIsThereByItsAlpha) {
     Stage stage;
     Material glass = blended(thin_glass(1), 0.5f);
     glass.base_color = {0.5f, 1, 1};
-    stage.add(sheet(0), glass);
-    stage.add(sheet(-1), unlit(kBack));
+    stage.add(texture_square(0), glass);
+    stage.add(texture_square(-1), unlit(kBack));
     tally(render(stage, black, settings_for(kFront, 16)), kFront, 1e-4, everywhere(kBack * glm::dvec3(0.75, 1, 1)))
         .expect(0, 256);
 }
 
 TEST_F(BlendTest, OnlyTheUnlitShareSkipsTheToneCurve) {
     Stage stage;
-    stage.add(sheet(0), blended(unlit(kRed), 0.5f));
+    stage.add(texture_square(0), blended(unlit(kRed), 0.5f));
     Material lamp = lambert({0, 0, 0});
     lamp.emissive = glm::vec3(3, 2, 1);
-    stage.add(sheet(-1), lamp);
+    stage.add(texture_square(-1), lamp);
     const RenderSettings settings = settings_for(kFront, 16);
     const uint32_t want = encode(0.5 * glm::dvec3(3, 2, 1), settings.exposure, settings.tonemap, 0.5 * kRed);
     const RenderResult picture = render(stage, black, settings);
@@ -152,8 +140,8 @@ TEST_F(BlendTest, OnlyTheUnlitShareSkipsTheToneCurve) {
 TEST_F(BlendTest, CutRaysAreThoseThatBouncesWouldFollow) {
     // Behind the sheet a mirror faces it: with one bounce its image is cut at the second one.
     Stage stage;
-    stage.add(sheet(0), blended(unlit(kRed), 0.5f));
-    stage.add(sheet(-1), plane_mirror());
+    stage.add(texture_square(0), blended(unlit(kRed), 0.5f));
+    stage.add(texture_square(-1), plane_mirror());
     RenderSettings settings = settings_for(kFront, 16);
     settings.bounces = 0;
     const RenderResult none = render(stage, white, settings);

@@ -14,13 +14,6 @@ Material coated(Material m, float share, float roughness) {
     return m;
 }
 
-/// The square |x|, |y| ≤ 1 at z = 0, u to the right, v downwards.
-Primitive square() {
-    Primitive quad = faces({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}});
-    quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    return quad;
-}
-
 Camera oblique(double cosine) {
     const double sine = std::sqrt(1 - cosine * cosine);
     return orthographic({float(4 * sine), 0, float(4 * cosine)}, {0, 0, 0}, 0.3f);
@@ -30,7 +23,7 @@ TEST_F(CoatTest, MirrorsBySchlick) {
     for (const float share : {1.f, 0.4f})
         for (const double cosine : {1.0, 0.6, 0.2}) {
             Stage stage;
-            stage.add(square(), coated(lambert({0, 0, 0}), share, 0));
+            stage.add(texture_square(), coated(lambert({0, 0, 0}), share, 0));
             const Camera camera = oblique(cosine);
             tally(render(stage, white, settings_for(camera, 16)), camera, 1e-4, [&](const ViewRay&) {
                 return glm::dvec3(double(share) * schlick(0.04, 1, cosine));
@@ -44,7 +37,7 @@ TEST_F(CoatTest, TakesItsShareFromBelow) {
         Stage stage;
         Material lamp = lambert({0, 0, 0});
         lamp.emissive = {2, 1, 0.5f};
-        stage.add(square(), coated(lamp, 0.8f, 0));
+        stage.add(texture_square(), coated(lamp, 0.8f, 0));
         const Camera camera = oblique(cosine);
         tally(render(stage, black, settings_for(camera, 16)), camera, 1e-4, [&](const ViewRay&) {
             return (1 - double(0.8f) * schlick(0.04, 1, cosine)) * glm::dvec3(2, 1, 0.5);
@@ -101,7 +94,7 @@ TEST_F(CoatTest, BothReflectionsAreFollowed) {
     Stage stage;
     Material metal_below = metal("copper", {0.9f, 0.5f, 0.3f});
     metal_below.roughness = 0;
-    stage.add(turned(square(), -45, {0, 1, 0}), coated(metal_below, 1, 0));
+    stage.add(turned(texture_square(), -45, {0, 1, 0}), coated(metal_below, 1, 0));
     for (const float side : {-1.f, 1.f}) {
         Material m = unlit({0.5f, 0.25f, 1});
         stage.add(parallelogram({3 * side, -4, 4}, {0, 0, -8}, {0, 8, 0}), m);
@@ -122,19 +115,11 @@ TEST_F(CoatTest, TexturesSayWhereAndHowRough) {
     Stage stage;
     Material m = coated(lambert({0, 0, 0}), 0.5f, 0);
     m.clearcoat_texture = 0;
-    Texture t;
-    t.width = 2;
-    t.height = 1;
-    t.nearest = true;
-    t.texels = {0xff0000ffu, 0xff000033u};  // red: 1 and 0.2
-    stage.scene.textures = {t};
-    stage.add(square(), m);
+    stage.scene.textures = {two_texels({255, 0, 0}, {51, 0, 0})};
+    stage.add(texture_square(), m);
     const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
     tally(render(stage, white, settings_for(camera, 32)), camera, 1e-4,
-          [](const ViewRay& ray) -> std::optional<glm::dvec3> {
-              if (std::abs(ray.origin.x) < 1e-3) return {};
-              return glm::dvec3((ray.origin.x < 0 ? 1 : 0.2) * 0.5 * 0.04);
-          })
+          left_and_right(glm::dvec3(0.5 * 0.04), glm::dvec3(0.2 * 0.5 * 0.04)))
         .expect(0, 1000);
 }
 
@@ -152,7 +137,7 @@ TEST_F(CoatTest, HasANormalOfItsOwn) {
         Material m = coated(lambert({0, 0, 0}), 1, 0);
         (coat ? m.coat_normal_texture : m.normal_texture) = 0;
         stage.scene.textures = {bent};
-        stage.add(square(), m);
+        stage.add(texture_square(), m);
         complete_tangents(stage.scene);
         const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
         tally(render(stage, white, settings_for(camera, 16)), camera, 1e-4, [&](const ViewRay&) {
@@ -163,7 +148,7 @@ TEST_F(CoatTest, HasANormalOfItsOwn) {
 
 TEST_F(CoatTest, OnGlassItBrightensTheReflection) {
     Stage stage;
-    stage.add(square(), coated(thin_glass(1), 1, 0));  // an index of 1 reflects nothing by itself
+    stage.add(texture_square(), coated(thin_glass(1), 1, 0));  // an index of 1 reflects nothing by itself
     stage.add(parallelogram({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), unlit({0.3f, 0.3f, 0.3f}));
     const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
     tally(render(stage, white, settings_for(camera, 16)), camera, 1e-4, [](const ViewRay&) {
@@ -178,7 +163,7 @@ TEST_F(CoatTest, BlendedSurfacesKeepTheirCoat) {
         Material m = coated(lambert({0, 0, 0}), 1, 0);
         m.blended = true;
         m.alpha = 0.5f;
-        stage.add(square(), m);
+        stage.add(texture_square(), m);
         stage.add(parallelogram({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), unlit({0.3f, 0.3f, 0.3f}));
         const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
         RenderSettings settings = settings_for(camera, 16);
@@ -194,20 +179,12 @@ TEST_F(CoatTest, RoughnessIsTheTexturesChannel) {
     Material m = coated(lambert({0, 0, 0}), 1, 0.5f);
     m.coat_roughness_texture = 0;
     m.coat_roughness_texture.channel = 1;
-    Texture t;
-    t.width = 2;
-    t.height = 1;
-    t.nearest = true;
-    t.texels = {0xff000000u, 0xff00ff00u};  // green: 0 and 1
-    stage.scene.textures = {t};
-    stage.add(square(), m);
+    stage.scene.textures = {two_texels({0, 0, 0}, {0, 255, 0})};
+    stage.add(texture_square(), m);
     const Camera camera = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
     const double rough = ggx_mean(1, 0.5, [](double c) { return schlick(0.04, 1, c); });
     tally(render(stage, white, settings_for(camera, 32)), camera, 1e-3,
-          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
-              if (std::abs(ray.origin.x) < 1e-3) return {};
-              return glm::dvec3(ray.origin.x < 0 ? 0.04 : rough);
-          })
+          left_and_right(glm::dvec3(0.04), glm::dvec3(rough)))
         .expect(0, 1000);
 }
 

@@ -11,23 +11,6 @@ Stage empty_stage() {
     return stage;
 }
 
-/// Every direction's light tells the direction. By the documented convention: the centre looks along -z, +x is to the
-/// right of it, +y at the top.
-glm::dvec3 light_of(const glm::dvec3& d) {
-    return 0.5 + 0.4 * d;
-}
-Environment direction_image(uint32_t width) {
-    std::vector<glm::vec4> pixels;
-    for (uint32_t y = 0; y < width / 2; y++)
-        for (uint32_t x = 0; x < width; x++) {
-            const double phi = ((x + 0.5) / width - 0.5) * 2 * kPi, theta = (y + 0.5) / (width / 2) * kPi;
-            pixels.push_back(glm::vec4(glm::vec3(light_of({std::sin(theta) * std::sin(phi), std::cos(theta),
-                                                           -std::sin(theta) * std::cos(phi)})),
-                                       1));
-        }
-    return image_environment(width, width / 2, pixels);
-}
-
 using EnvironmentTest = PictureTest;
 
 const std::pair<glm::vec3, glm::vec3> kViews[] = {{{0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 1, 0}},

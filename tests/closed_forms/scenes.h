@@ -121,6 +121,22 @@ inline std::optional<bool> whole_at(const glm::dvec2& uv, double margin = 1e-3) 
     return is_whole(wrapped(p.x), wrapped(p.y));
 }
 
+// --- Textures ---
+
+struct Rgba {
+    uint8_t r, g, b, a = 255;
+};
+
+/// Two texels side by side, each sharply.
+inline Texture two_texels(Rgba left, Rgba right) {
+    Texture t;
+    t.width = 2;
+    t.height = 1;
+    for (const Rgba& c : {left, right}) t.texels.push_back(uint32_t(c.r | c.g << 8 | c.b << 16) | uint32_t(c.a) << 24);
+    t.nearest = true;
+    return t;
+}
+
 // --- Shapes ---
 
 /// Flat faces, each a convex polygon, counter-clockwise from outside.
@@ -191,6 +207,13 @@ inline Primitive prism() {
                   {{-1, -1, 1}, {-1, 1, 1}, {-1, -1, -1}}});
 }
 
+/// The square |x|, |y| ≤ 1 at a depth, facing +z, u to the right, v downwards, from 0 to 1.
+inline Primitive texture_square(float z = 0) {
+    Primitive quad = faces({{{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}});
+    quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    return quad;
+}
+
 // --- Cameras ---
 
 inline Camera perspective(const glm::vec3& eye, const glm::vec3& look, float degrees, const glm::vec3& up = {0, 1, 0}) {
@@ -227,6 +250,32 @@ inline ViewRay view_ray(const Camera& camera, uint32_t width, uint32_t height, d
     const double sx = (2 * x / width - 1) * half * width / height, sy = (1 - 2 * y / height) * half;
     if (flat) return {eye + right * sx + up * sy, forward};
     return {eye, glm::normalize(forward + right * sx + up * sy)};
+}
+
+/// What a pixel to the left and to the right of the middle shows.
+inline std::function<std::optional<glm::dvec3>(const ViewRay&)> left_and_right(const glm::dvec3& left,
+                                                                               const glm::dvec3& right) {
+    return [=](const ViewRay& ray) -> std::optional<glm::dvec3> {
+        if (std::abs(ray.origin.x) < 1e-3) return {};
+        return ray.origin.x < 0 ? left : right;
+    };
+}
+
+// --- An environment that tells directions: -z in the middle of the image, +x to the right of it, +y at the top ---
+
+inline glm::dvec3 light_of(const glm::dvec3& direction) {
+    return 0.5 + 0.4 * direction;
+}
+inline Environment direction_image(uint32_t width = 256) {
+    std::vector<glm::vec4> pixels;
+    for (uint32_t y = 0; y < width / 2; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const double phi = ((x + 0.5) / width - 0.5) * 2 * kPi, theta = (y + 0.5) / (width / 2) * kPi;
+            pixels.push_back(glm::vec4(glm::vec3(light_of({std::sin(theta) * std::sin(phi), std::cos(theta),
+                                                           -std::sin(theta) * std::cos(phi)})),
+                                       1));
+        }
+    return image_environment(width, width / 2, pixels);
 }
 
 // --- Optics in double ---

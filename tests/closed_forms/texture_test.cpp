@@ -14,36 +14,6 @@ double linear_code(double code) {
     return code <= 0.04045 * 255 ? code / 255 / 12.92 : std::pow((code / 255 + 0.055) / 1.055, 2.4);
 }
 
-struct Rgba {
-    uint8_t r, g, b, a = 255;
-};
-
-/// Two texels side by side, each sharply.
-Texture two_texels(Rgba left, Rgba right) {
-    Texture t;
-    t.width = 2;
-    t.height = 1;
-    for (const Rgba& c : {left, right}) t.texels.push_back(uint32_t(c.r | c.g << 8 | c.b << 16) | uint32_t(c.a) << 24);
-    t.nearest = true;
-    return t;
-}
-
-/// The square |x|, |y| ≤ 1 at z = 0, u to the right, v downwards, from 0 to 1.
-Primitive texture_square() {
-    Primitive quad = faces({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}});
-    quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    return quad;
-}
-
-/// What a pixel to the left and to the right of the middle shows.
-std::function<std::optional<glm::dvec3>(const ViewRay&)> left_and_right(const glm::dvec3& left,
-                                                                        const glm::dvec3& right) {
-    return [=](const ViewRay& ray) -> std::optional<glm::dvec3> {
-        if (std::abs(ray.origin.x) < 1e-3) return {};
-        return ray.origin.x < 0 ? left : right;
-    };
-}
-
 TEST_F(TextureTest, EmissionIsTheFactorTimesTheTexture) {
     Stage stage;
     Material m = emitting({3, 1, 0.5f});
@@ -222,24 +192,6 @@ TEST_F(TextureTest, TransmissionIsTheFactorTimesTheTexture) {
 
 // --- Normals ---
 
-/// Light that tells the direction where it comes from.
-glm::dvec3 light_towards(const glm::dvec3& d) {
-    return 0.5 + 0.4 * d;
-}
-
-Environment image_of_directions() {
-    constexpr uint32_t width = 256;
-    std::vector<glm::vec4> pixels;
-    for (uint32_t y = 0; y < width / 2; y++)
-        for (uint32_t x = 0; x < width; x++) {
-            const double phi = ((x + 0.5) / width - 0.5) * 2 * kPi, theta = (y + 0.5) / (width / 2) * kPi;
-            pixels.push_back(glm::vec4(glm::vec3(light_towards({std::sin(theta) * std::sin(phi), std::cos(theta),
-                                                                -std::sin(theta) * std::cos(phi)})),
-                                       1));
-        }
-    return image_environment(width, width / 2, pixels);
-}
-
 /// One texel: the normal that it stands for has these parts along tangent, bitangent and normal.
 Texture normal_texel(const glm::dvec3& parts) {
     Texture t;
@@ -272,7 +224,7 @@ TEST_F(TextureTest, NormalsTurnWithTheTexture) {
         {"the node mirrored", glm::mat2(1), mirrored, {-x, y, z}},
         {"both mirrored", glm::mat2(-1, 0, 0, 1), mirrored, {x, y, z}},
     };
-    const Environment image = image_of_directions();
+    const Environment image = direction_image();
     for (const Facing& facing : cases)
         for (const bool behind : {false, true}) {
             SCOPED_TRACE(fmt::format("{}{}", facing.name, behind ? ", from behind" : ""));
@@ -287,7 +239,7 @@ TEST_F(TextureTest, NormalsTurnWithTheTexture) {
             const Camera camera = orthographic({0, 0, behind ? -2 : 2}, {0, 0, 0}, 1.8f);
             const glm::dvec3 n = glm::normalize(glm::dvec3(facing.expected));
             tally(render(stage, image, settings_for(camera, 16)), camera, 0.01, [&](const ViewRay& ray) {
-                return light_towards(ray.direction - 2 * glm::dot(ray.direction, n) * n);
+                return light_of(ray.direction - 2 * glm::dot(ray.direction, n) * n);
             }).expect(0, 256);
         }
 }
@@ -304,8 +256,8 @@ TEST_F(TextureTest, NormalScaleTiltsAndTangentsOfTheFileCount) {
     stage.scene.textures = {normal_texel({a, 0, c})};
     complete_tangents(stage.scene);
     const glm::dvec3 n = glm::normalize(glm::dvec3(0, a / 2, c));
-    tally(render(stage, image_of_directions(), settings_for(kFront, 16)), kFront, 0.01, [&](const ViewRay& ray) {
-        return light_towards(ray.direction - 2 * glm::dot(ray.direction, n) * n);
+    tally(render(stage, direction_image(), settings_for(kFront, 16)), kFront, 0.01, [&](const ViewRay& ray) {
+        return light_of(ray.direction - 2 * glm::dot(ray.direction, n) * n);
     }).expect(0, 256);
 }
 
@@ -335,8 +287,8 @@ TEST_F(TextureTest, TangentsMorphAndFollowTheirJoint) {
             stage.scene.meshes[0].weights = {1};
         }
         const glm::dvec3 n(0, a, c);
-        tally(render(stage, image_of_directions(), settings_for(kFront, 16)), kFront, 0.01, [&](const ViewRay& ray) {
-            return light_towards(ray.direction - 2 * glm::dot(ray.direction, n) * n);
+        tally(render(stage, direction_image(), settings_for(kFront, 16)), kFront, 0.01, [&](const ViewRay& ray) {
+            return light_of(ray.direction - 2 * glm::dot(ray.direction, n) * n);
         }).expect(0, 256);
     }
 }

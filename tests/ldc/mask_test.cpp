@@ -32,7 +32,8 @@ class MaskedCubeTest : public DeviceTest {
         assembly.uvs = geometry_.uvs;
         assembly.colors = geometry_.colors;
         assembly.materials = geometry_.materials;
-        return upload_base_colors(device(), commands(), scene_, assembly);
+        return upload_base_colors(device(), commands(), scene_, assembly, used_materials(scene_, assembly),
+                                  MaterialsFor::hits);
     }
     test::SingleCube cube(uint32_t resolution, Sampling sampling, const BaseColorBuffers* masks) {
         return {device(),

@@ -10,6 +10,13 @@
 namespace peelray::testing {
 namespace {
 
+/// Texture 0 shows these texels, side by side.
+void add_texture(json& gltf, const TempFolder& folder, const std::vector<uint32_t>& texels) {
+    write_png(folder.path() / "a.png", Image8{uint32_t(texels.size()), 1, texels}, true);
+    gltf["images"] = {{{"uri", "a.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+}
+
 TEST(GltfMaterial, MissingImagesWithoutTexelsInThePictureAreNoted) {
     const TempFolder folder;
     json gltf = square();
@@ -49,9 +56,7 @@ TEST(GltfMaterial, SpecularAndGlossiness) {
     const TempFolder folder;
     json gltf = square();
     gltf["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
-    write_png(folder.path() / "a.png", Image8{1, 1, {0x331e140au}}, true);
-    gltf["images"] = {{{"uri", "a.png"}}};
-    gltf["textures"] = {{{"source", 0}}};
+    add_texture(gltf, folder, {0x331e140au});
     const char* text = R"([{"pbrMetallicRoughness": {"metallicFactor": 1, "baseColorFactor": [0, 0, 0, 1]},
         "extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.1, 0.2, 0.3, 0.4],
         "specularFactor": [0.5, 0.6, 0.7], "glossinessFactor": 0.75}}},
@@ -83,9 +88,7 @@ TEST(GltfMaterial, ClearCoat) {
     const TempFolder folder;
     json gltf = square();
     gltf["extensionsUsed"] = {"KHR_materials_clearcoat"};
-    write_png(folder.path() / "a.png", Image8{1, 1, {0xff8080ffu}}, true);
-    gltf["images"] = {{{"uri", "a.png"}}};
-    gltf["textures"] = {{{"source", 0}}};
+    add_texture(gltf, folder, {0xff8080ffu});
     gltf["materials"] = json::parse(R"([{"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 0.75,
         "clearcoatRoughnessFactor": 0.5, "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0},
         "clearcoatNormalTexture": {"index": 0, "scale": 0.25}}}},
@@ -122,10 +125,9 @@ TEST(GltfMaterial, SamplersSayHowTexturesAreFiltered) {
                           {{{"minFilter", 9987}}, false, false, Mipmaps::linear}};
     for (const Case& c : cases) {
         json gltf = square();
-        write_png(folder.path() / "a.png", Image8{1, 1, {0x331e140au}}, true);
-        gltf["images"] = {{{"uri", "a.png"}}};
+        add_texture(gltf, folder, {0x331e140au});
         gltf["samplers"] = {c.sampler};
-        gltf["textures"] = {{{"source", 0}, {"sampler", 0}}};
+        gltf["textures"][0]["sampler"] = 0;
         gltf["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
         const Scene scene = load(folder, gltf);
         EXPECT_TRUE(scene.notes.empty()) << all_notes(scene);
@@ -142,9 +144,7 @@ TEST(GltfMaterial, BlendingIsCoverageWhereAlphaIsLess) {
     const TempFolder folder;
     const auto material = [&](const char* text, uint8_t alpha) {
         json gltf = square();
-        write_png(folder.path() / "a.png", Image8{2, 1, {0xff1e140au, uint32_t(alpha) << 24 | 0x1e140au}}, true);
-        gltf["images"] = {{{"uri", "a.png"}}};
-        gltf["textures"] = {{{"source", 0}}};
+        add_texture(gltf, folder, {0xff1e140au, uint32_t(alpha) << 24 | 0x1e140au});
         gltf["materials"] = {json::parse(text)};
         gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_volume"};
         return load(folder, gltf);

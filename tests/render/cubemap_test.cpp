@@ -4,21 +4,6 @@
 namespace peelray {
 namespace {
 
-/// Every direction's light tells the direction.
-glm::dvec3 sky_light(const glm::dvec3& d) {
-    return 0.5 + 0.4 * d;
-}
-Environment direction_image() {
-    const uint32_t width = 256;
-    std::vector<glm::vec4> pixels;
-    for (uint32_t y = 0; y < width / 2; y++)
-        for (uint32_t x = 0; x < width; x++)
-            pixels.push_back(glm::vec4(
-                glm::vec3(sky_light(glm::dvec3(environment_direction((x + 0.5f) / width, (y + 0.5f) / (width / 2))))),
-                1));
-    return image_environment(width, width / 2, pixels);
-}
-
 /// A room seen from inside, whose light at p is light(p).
 Primitive room(float half, const std::function<glm::vec3(glm::vec3)>& light) {
     Primitive walls = inside_out(box(glm::vec3(-half), glm::vec3(half)));
@@ -220,8 +205,8 @@ TEST_F(CubemapTracerTest, GlassBendsOnce) {
         if (d < 0.05) return {};
         const glm::dvec3 n = ray.origin + (-b - std::sqrt(d)) * ray.direction;
         const double cosine = -glm::dot(n, ray.direction), r = fresnel(cosine, 1, 1.5);
-        return r * sky_light(glm::reflect(ray.direction, n)) +
-               (1 - r) * absorbed * sky_light(glm::refract(ray.direction, n, 1 / 1.5));
+        return r * light_of(glm::reflect(ray.direction, n)) +
+               (1 - r) * absorbed * light_of(glm::refract(ray.direction, n, 1 / 1.5));
     }).expect(0, 3000);
     // A thin wall lets everything straight through.
     Stage pane;
