@@ -98,7 +98,7 @@ TextureFactors textureFactors(uint material, TexturePlace place) {
         if (index < 0 || use == TEXTURE_NORMAL || use == TEXTURE_COAT_NORMAL) continue;
         if (index != last) value = textureAt(index, place);
         last = index;
-        const float number = value[materials[material].channels >> uint(2 * use) & 3u];
+        const float number = value[materials[material].channels[use >> 4] >> uint(2 * (use & 15)) & 3u];
         if (use == TEXTURE_EMISSIVE) f.emissive = value.rgb;
         if (use == TEXTURE_METALLIC) f.metallic = number;
         if (use == TEXTURE_ROUGHNESS) f.roughness = number;

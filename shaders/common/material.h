@@ -22,7 +22,14 @@ namespace peelray {
 #define TEXTURE_CLEARCOAT 10
 #define TEXTURE_COAT_ROUGHNESS 11
 #define TEXTURE_COAT_NORMAL 12
-#define TEXTURE_USES 13
+#define TEXTURE_SHEEN_COLOR 13
+#define TEXTURE_SHEEN_ROUGHNESS 14
+#define TEXTURE_IRIDESCENCE 15
+#define TEXTURE_FILM_THICKNESS 16
+#define TEXTURE_ANISOTROPY 17
+#define TEXTURE_DIFFUSE_TRANSMISSION 18
+#define TEXTURE_DIFFUSE_TRANSMISSION_COLOR 19
+#define TEXTURE_USES 20
 
 struct GpuMaterial {
     vec3 base_color;
@@ -33,7 +40,7 @@ struct GpuMaterial {
     float transmission;
     float ior;
     int textures[TEXTURE_USES];  ///< by TEXTURE_*: an entry of the table of textures, -1: none
-    uint channels;       ///< of those of single numbers, two bits each, in the same order
+    uint channels[2];    ///< of those of single numbers, two bits each, in the same order, sixteen in one
     uint first_tangent;  ///< of the vertices' tangents, which lie behind the texture coordinates, two entries each
     float normal_scale;
     float occlusion_strength;
@@ -48,7 +55,7 @@ struct GpuMaterial {
     float f90;           ///< MATERIAL_SCHLICK: at grazing angles
     vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of (1 - cosine) in split_sum.h
 };
-SHARED_SIZE(GpuMaterial, 176);
+SHARED_SIZE(GpuMaterial, 208);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
 #define MATERIAL_COLORED 4u       // vertices have colours

@@ -30,9 +30,26 @@ std::string named(const std::string& name) {
 std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
                                    m.base_color.y, m.base_color.z, m.metallic, m.roughness);
-    constexpr std::array uses = {"",           "emission ",       "metal ",      "roughness ", "transmission ",
-                                 "thickness ", "normal ",         "occlusion ",  "specular ",  "specular colour ",
-                                 "coat ",      "coat roughness ", "coat normal "};
+    constexpr std::array uses = {"",
+                                 "emission ",
+                                 "metal ",
+                                 "roughness ",
+                                 "transmission ",
+                                 "thickness ",
+                                 "normal ",
+                                 "occlusion ",
+                                 "specular ",
+                                 "specular colour ",
+                                 "coat ",
+                                 "coat roughness ",
+                                 "coat normal ",
+                                 "sheen colour ",
+                                 "sheen roughness ",
+                                 "iridescence ",
+                                 "film thickness ",
+                                 "anisotropy ",
+                                 "diffuse transmission ",
+                                 "diffuse transmission colour "};
     static_assert(uses.size() == material_textures.size());
     for (size_t i = 0; i < material_textures.size(); i++)
         if (const MaterialTexture& used = m.*material_textures[i])

@@ -199,7 +199,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             const bool read = used[i] && (shades || (k == TEXTURE_BASE_COLOR && material.alpha_cutoff > 0));
             const bool is_data = !is_color(material_textures[size_t(k)]);
             m.textures[k] = read ? textures.add(use, is_data, shades, assembly.uvs.size()) : -1;
-            m.channels |= use.channel << 2 * k;
+            m.channels[k >> 4] |= use.channel << 2 * (k & 15);
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;
             if (k != TEXTURE_NORMAL && k != TEXTURE_COAT_NORMAL) m.flags |= MATERIAL_TEXTURED;

@@ -25,8 +25,9 @@ struct PictureSettings {
     uint32_t bounces = 4;                                      ///< secondary rays in a row, 0 to 16
     uint32_t spp = 1;                                          ///< samples per pixel, at least 1
     bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
-    bool ambient = false;  ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
-    float exposure = 0;    ///< stops; applies to the encoded picture only
+    bool ambient = false;             ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
+    bool energy_compensation = true;  ///< light that rough surfaces scatter several times is not lost (Turquin, 2019)
+    float exposure = 0;               ///< stops; applies to the encoded picture only
     Tonemap tonemap = Tonemap::neutral;
     bool aovs = false;       ///< also the auxiliary pictures
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on

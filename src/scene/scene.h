@@ -48,8 +48,7 @@ struct MaterialTexture {
     glm::vec2 place(const glm::vec2& uv) const { return uv_matrix * uv + uv_offset; }
 };
 
-/// glTF 2.0 metallic-roughness with transmission, ior, specular, volume and emissive_strength; textures modulate
-/// factors.
+/// glTF 2.0 metallic-roughness with the extensions that docs/scenes.md lists; textures modulate factors.
 struct Material {
     std::string name;
     glm::vec3 base_color{1};             ///< linear, [0, 1]
@@ -65,18 +64,37 @@ struct Material {
     MaterialTexture occlusion_texture;  ///< one channel; 0: no light of the sky arrives
     MaterialTexture clearcoat_texture, coat_roughness_texture;  ///< one channel each
     MaterialTexture coat_normal_texture;  ///< as normal_texture, for the coat; none: the coat is smooth
-    float normal_scale = 1;               ///< of the normal texture's red and green
-    float occlusion_strength = 1;         ///< [0, 1]
-    float metallic = 0;                   ///< [0, 1]
-    float roughness = 1;                  ///< perceptual, [0, 1]; GGX alpha is its square
-    glm::vec3 emissive{0};           ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
-    float transmission = 0;          ///< share of the light that is not reflected and passes through, [0, 1]
-    float ior = 1.5f;                ///< index of refraction, ≥ 1; 0: infinite, all light is reflected
-    float clearcoat = 0;             ///< share of the surface that has a coat, [0, 1] (KHR_materials_clearcoat)
-    float coat_roughness = 0;        ///< perceptual, [0, 1]
-    float coat_normal_scale = 1;     ///< as normal_scale
-    float specular = 1;              ///< share of the reflection of what is no metal, [0, 1] (KHR_materials_specular)
-    glm::vec3 specular_color{1};     ///< its colour at normal incidence, ≥ 0
+    MaterialTexture sheen_color_texture;  ///< sRGB
+    MaterialTexture sheen_roughness_texture, iridescence_texture;  ///< one channel each
+    MaterialTexture film_thickness_texture;                        ///< one channel: 0 the least, 1 the most thickness
+    /// Red and green: the direction along which the lobe is stretched, in tangent space; blue times `anisotropy`.
+    MaterialTexture anisotropy_texture;
+    MaterialTexture diffuse_transmission_texture;        ///< one channel
+    MaterialTexture diffuse_transmission_color_texture;  ///< sRGB
+    float normal_scale = 1;                              ///< of the normal texture's red and green
+    float occlusion_strength = 1;                        ///< [0, 1]
+    float metallic = 0;                                  ///< [0, 1]
+    float roughness = 1;                                 ///< perceptual, [0, 1]; GGX alpha is its square
+    glm::vec3 emissive{0};        ///< radiance, W/(sr·m²) up to the exposure; already times the emissive strength
+    float transmission = 0;       ///< share of the light that is not reflected and passes through, [0, 1]
+    float ior = 1.5f;             ///< index of refraction, ≥ 1; 0: infinite, all light is reflected
+    float clearcoat = 0;          ///< share of the surface that has a coat, [0, 1] (KHR_materials_clearcoat)
+    float coat_roughness = 0;     ///< perceptual, [0, 1]
+    float coat_normal_scale = 1;  ///< as normal_scale
+    float specular = 1;           ///< share of the reflection of what is no metal, [0, 1] (KHR_materials_specular)
+    glm::vec3 specular_color{1};  ///< its colour at normal incidence, ≥ 0
+    glm::vec3 sheen_color{0};     ///< of the cloth's fibres, [0, 1]; black: none (KHR_materials_sheen)
+    float sheen_roughness = 0;    ///< perceptual, [0, 1]
+    float iridescence = 0;        ///< share of the surface that a thin film covers, [0, 1] (KHR_materials_iridescence)
+    float film_ior = 1.3f;        ///< its index of refraction, ≥ 1
+    float film_least = 100,
+          film_most = 400;          ///< its thickness, nm, where the texture says 0 and 1; no texture: the most
+    float anisotropy = 0;           ///< how much the lobe is stretched, [0, 1] (KHR_materials_anisotropy)
+    float anisotropy_rotation = 0;  ///< of its direction, radians from the tangent towards the bitangent
+    float dispersion = 0;           ///< 20 over the Abbe number, ≥ 0 (KHR_materials_dispersion)
+    /// Share of the diffuse light that comes out behind, [0, 1], and its colour (KHR_materials_diffuse_transmission).
+    float diffuse_transmission = 0;
+    glm::vec3 diffuse_transmission_color{1};
     float thickness = 0;             ///< 0: thin-walled (no bending, no absorption); > 0: the mesh bounds a volume
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
     float attenuation_distance = std::numeric_limits<float>::infinity();
@@ -85,17 +103,33 @@ struct Material {
 };
 
 /// All textures of a material, in the order of the shaders' TEXTURE_* (common/material.h).
-inline constexpr std::array<MaterialTexture Material::*, 13> material_textures = {
-    &Material::base_color_texture,     &Material::emissive_texture,     &Material::metallic_texture,
-    &Material::roughness_texture,      &Material::transmission_texture, &Material::thickness_texture,
-    &Material::normal_texture,         &Material::occlusion_texture,    &Material::specular_texture,
-    &Material::specular_color_texture, &Material::clearcoat_texture,    &Material::coat_roughness_texture,
-    &Material::coat_normal_texture};
+inline constexpr std::array<MaterialTexture Material::*, 20> material_textures = {
+    &Material::base_color_texture,
+    &Material::emissive_texture,
+    &Material::metallic_texture,
+    &Material::roughness_texture,
+    &Material::transmission_texture,
+    &Material::thickness_texture,
+    &Material::normal_texture,
+    &Material::occlusion_texture,
+    &Material::specular_texture,
+    &Material::specular_color_texture,
+    &Material::clearcoat_texture,
+    &Material::coat_roughness_texture,
+    &Material::coat_normal_texture,
+    &Material::sheen_color_texture,
+    &Material::sheen_roughness_texture,
+    &Material::iridescence_texture,
+    &Material::film_thickness_texture,
+    &Material::anisotropy_texture,
+    &Material::diffuse_transmission_texture,
+    &Material::diffuse_transmission_color_texture};
 
 /// Does a use read its texture's red, green and blue as an sRGB-encoded colour?
 constexpr bool is_color(MaterialTexture Material::*use) {
     return use == &Material::base_color_texture || use == &Material::emissive_texture ||
-           use == &Material::specular_color_texture;
+           use == &Material::specular_color_texture || use == &Material::sheen_color_texture ||
+           use == &Material::diffuse_transmission_color_texture;
 }
 
 /// Joints of a skin that pull at a vertex, and how much; the weights sum to 1, or all are 0 (the vertex follows its

@@ -239,6 +239,7 @@ struct EffectArguments {
     uint32_t bounces = 4, spp = 1;
     std::optional<MaterialOverride> material;
     bool floor = false;
+    bool no_energy_compensation = false;
 };
 
 /// A list out of the effects, or "none".
@@ -269,6 +270,10 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});
+    add_setting(list, a.no_energy_compensation,
+                {.name = "no-energy-compensation",
+                 .group = group,
+                 .help = "rough surfaces lose the light that they scatter more than once, as in many renderers"});
 }
 
 /// Which device works.
