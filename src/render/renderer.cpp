@@ -186,7 +186,8 @@ void Renderer::Impl::prepare_view() {
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = f.bands.row_pixels();
-    frame.effects = f.tracer->traces() || f.maps ? effects_of(settings) : 0;
+    frame.effects = (f.tracer->traces() || f.maps ? effects_of(settings) : 0) |
+                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u);
     frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.bounces = settings.bounces;
     frame.last_level = f.last_level;
