@@ -38,15 +38,15 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
           {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1.55}}}}}}};
     gltf["meshes"][0]["name"] = "pane";
     gltf["meshes"][0]["primitives"][0]["material"] = 0;
-    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_sheen"};
+    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_xmp_json_ld"};
     put("square.bin", square_bytes());
     put("square.gltf", gltf.dump());
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
     expect_says(run.out, {"triangles 2 (0 without area)", "bounds -1 -1 2 to 1 1 2", "pane: 2 triangles", "amber:",
                           "transmission 1", "1.55", "0 front row: eye 0 0 0, vertical field of view 60.0 degrees",
-                          "extensions used KHR_materials_ior, KHR_materials_sheen, KHR_materials_transmission",
-                          "extensions without effect KHR_materials_sheen"});
+                          "extensions used KHR_materials_ior, KHR_materials_transmission, KHR_xmp_json_ld",
+                          "extensions without effect KHR_xmp_json_ld"});
 }
 
 TEST_F(InfoCommand, Variants) {

@@ -252,7 +252,7 @@ TEST(GltfBad, Hierarchy) {
 
 TEST(GltfBad, RequiredExtensions) {
     const TempFolder folder;
-    for (const char* name : {"KHR_texture_basisu", "KHR_materials_sheen", "ACME_magic"}) {
+    for (const char* name : {"KHR_texture_basisu", "KHR_materials_sss", "ACME_magic"}) {
         json gltf = square();
         gltf["extensionsRequired"] = {"KHR_materials_ior", name};
         EXPECT_MENTIONS(error_of(folder, gltf), name);
