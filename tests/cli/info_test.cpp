@@ -74,6 +74,26 @@ TEST_F(InfoCommand, ClearCoat) {
                           "clear coat 0.5 of roughness 0.25"});
 }
 
+TEST_F(InfoCommand, SheenFilmsAnisotropyDispersionAndDiffuseTransmission) {
+    auto gltf = square_gltf();
+    gltf["materials"] = nlohmann::json::parse(R"([{"extensions": {
+        "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 0], "sheenRoughnessFactor": 0.75},
+        "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.75},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.25, "anisotropyRotation": 0.785398},
+        "KHR_materials_dispersion": {"dispersion": 0.36},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5,
+            "diffuseTransmissionColorFactor": [1, 0.5, 0.25]}}},
+        {"name": "plain"}])");
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    const Outcome run = this->run({"info", in("square.gltf")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    expect_says(run.out, {"sheen 0.5 0.25 0 of roughness 0.75", "iridescence 0.5 by a film of index 1.75, 400 nm",
+                          "anisotropy 0.25 turned by 45 degrees", "dispersion 0.36",
+                          "diffuse transmission 0.5 of colour 1 0.5 0.25",
+                          "plain: colour 1 1 1, metallic 1, roughness 1, front only"});
+}
+
 TEST_F(InfoCommand, MasksAndBlending) {
     auto gltf = square_gltf();
     gltf["materials"] = {

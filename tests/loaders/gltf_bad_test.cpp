@@ -49,7 +49,11 @@ TEST(GltfBad, WrongTypesEverywhere) {
     gltf["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}])");
     gltf["materials"] =
         json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1]}, "emissiveFactor": [0, 0, 0],
-        "extensions": {"KHR_materials_volume": {"attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]}}}])");
+        "extensions": {"KHR_materials_volume": {"attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]},
+                       "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.6, 0.7]},
+                       "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMaximum": 500},
+                       "KHR_materials_anisotropy": {"anisotropyStrength": 1, "anisotropyRotation": 1},
+                       "KHR_materials_dispersion": {"dispersion": 1}}}])");
     gltf["extensions"] = json::parse(R"({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}})");
     gltf["nodes"][0] = {{"mesh", 0},
                         {"camera", 0},
