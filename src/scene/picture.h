@@ -85,8 +85,12 @@ inline bool lets_through(const Material& material) {
     return transmits(material) || material.blended;
 }
 
-/// The material's roughness where it is smoothest, its coat included.
+/// The material's roughness where it is smoothest, its coat included. Anisotropy only adds to it, and none where there
+/// are no tangents.
 float least_roughness(const Scene& scene, const Material& material);
+
+/// The same where it is roughest: anisotropic lobes count as the round ones that are as wide on the mean.
+float most_roughness(const Material& material);
 
 /// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more
 /// than half.
