@@ -83,7 +83,7 @@ TEST(Ggx, SamplesFollowTheVisibleNormals) {
         });
         double sum = 0;
         const int n = 20000;
-        for (int i = 0; i < n; i++) sum += sample_ggx(view, alpha, random_pair(7, uint32_t(i), Purpose::microfacet)).z;
+        for (int i = 0; i < n; i++) sum += sample_ggx(view, glm::dvec2(alpha), random_pair(7, uint32_t(i), Purpose::microfacet)).z;
         EXPECT_NEAR(sum / n, expected, 2e-3) << alpha;
     }
 }
