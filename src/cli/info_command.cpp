@@ -42,9 +42,9 @@ std::string describe_extras(const Material& m) {
         if (m.film_thickness_texture) text += fmt::format("{:.4g} to ", m.film_least);
         text += fmt::format("{:.4g} nm", m.film_most);
     }
-    if (m.anisotropy > 0)
-        text += fmt::format(", anisotropy {:.3g} turned by {:.3g} degrees", m.anisotropy,
-                            m.anisotropy_rotation * 57.29578f);
+    if (m.anisotropy > 0) text += fmt::format(", anisotropy {:.3g}", m.anisotropy);
+    if (m.anisotropy > 0 && m.anisotropy_rotation != 0)
+        text += fmt::format(" turned by {:.3g} degrees", m.anisotropy_rotation * 57.29578f);
     if (m.dispersion > 0) text += fmt::format(", dispersion {:.3g}", m.dispersion);
     if (m.diffuse_transmission > 0)
         text +=
