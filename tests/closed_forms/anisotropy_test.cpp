@@ -147,6 +147,21 @@ TEST_F(AnisotropyTest, SamplesFollowTheLobe) {
         }
 }
 
+TEST_F(AnisotropyTest, BrushedGlassLosesNothing) {
+    for (const float thickness : {0.f, 1.f})
+        for (const double cosine : {0.9, 0.3}) {
+            Material m = brushed(0.3, 0.7, 0.4);
+            m.metallic = 0;
+            m.transmission = 1;
+            m.thickness = thickness;
+            Stage stage;
+            stage.add(brushed_square(), m);
+            RenderSettings settings = settings_for(slanted(cosine), 4);
+            settings.spp = 16;
+            EXPECT_NEAR(mean_radiance(render(stage, white, settings)).x, 1, 1e-3) << thickness << ", " << cosine;
+        }
+}
+
 TEST_F(AnisotropyTest, OneSampleLooksWhereTheStreakComesFrom) {
     // The normal turns towards the viewer, across the lobe.
     const double roughness = 0.1, anisotropy = 0.3, cosine = 0.6;

@@ -142,6 +142,30 @@ TEST_F(FilmOnTest, RoughOnesReflectItsShareOfTheLobe) {
     EXPECT_TRUE(near(got, want, 4e-3)) << text(got) << ", expected " << text(want);
 }
 
+TEST_F(FilmOnTest, SamplesAreMirroredAtTheMicrofacetsAngle) {
+    const Film film{1.8, 300};
+    const double roughness = 0.4;
+    Material m = filmed(black_dielectric(), film);
+    m.roughness = float(roughness);
+    std::vector<glm::dvec3> steps;
+    for (int i = 0; i <= 64; i++) steps.push_back(film_reflectance(film, glm::dvec3(1.5), i / 64.0));
+    for (const double cosine : {0.9, 0.4}) {
+        glm::dvec3 want;
+        for (int k = 0; k < 3; k++)
+            want[k] = ggx_mean(cosine, roughness, [&](double c) {
+                const size_t lower = std::min(size_t(c * 64), size_t(63));
+                return glm::mix(steps[lower][k], steps[lower + 1][k], c * 64 - double(lower));
+            });
+        Stage stage;
+        stage.add(texture_square(), m);
+        RenderSettings settings = settings_for(slanted(cosine), 8);
+        settings.spp = 48;
+        settings.energy_compensation = false;
+        const glm::dvec3 got = mean_radiance(render(stage, white, settings));
+        EXPECT_TRUE(near(got, want, 4e-3)) << cosine << ": " << text(got) << ", expected " << text(want);
+    }
+}
+
 TEST_F(FilmOnTest, LampsAreMirroredAtTheMicrofacetsAngle) {
     const Film film{1.6, 350};
     const double roughness = 0.4, cosine = 0.8, alpha = roughness * roughness, a2 = alpha * alpha;
@@ -192,6 +216,23 @@ TEST_F(FilmTest, VolumesHaveItInsideAsWell) {
             return (1.0 - face) / (1.0 + face);
         }).expect(0, 64);
     }
+}
+
+TEST_F(FilmTest, BetweenTwoMediaThereIsNone) {
+    // Liquid on glass that has a film on all of its sides; what is reflected is lost in the dark.
+    const Film film{1.9, 350};
+    const double cosine = 0.7, sine = std::sqrt(1 - cosine * cosine);
+    Stage stage;
+    stage.add(box({-5, -5, 0}, {5, 5, 0.3f}), clear_glass(1.33f));
+    stage.add(box({-5, -5, -0.2f}, {5, 5, 0}), filmed(clear_glass(), film));
+    stage.add(parallelogram({-9, -9, -1}, {18, 0, 0}, {0, 18, 0}), unlit({1, 1, 1}));
+    const Camera camera = slanted(cosine);
+    RenderSettings settings = settings_for(camera, 8);
+    settings.reflection = false;
+    const double in_liquid = std::sqrt(1 - std::pow(sine / 1.33, 2));
+    const glm::dvec3 want = (1 - fresnel(cosine, 1, 1.33)) * (1 - fresnel(in_liquid, 1.33, 1.5)) *
+                            (1.0 - film_reflectance(film, glm::dvec3(1.5), cosine));
+    tally(render(stage, black, settings), camera, 4e-3, [&](const ViewRay&) { return want; }).expect(0, 64);
 }
 
 TEST_F(FilmTest, NothingIsLostOrMadeUp) {
