@@ -43,10 +43,12 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
     const Branch& whole = scattered.refraction;
     (whole.mirrors ? rays_.cut_reflection : rays_.cut_refraction) += is_cut(whole, path);
-    for (const Branch& branch : scattered.split.empty() ? std::vector{whole} : scattered.split) {
+    const auto second = [&](const Branch& branch) {
         if (branch.traced) (branch.mirrors ? rays_.reflection : rays_.refraction)++;
         sum += follow(branch, surface, path, hit.triangle, 1);
-    }
+    };
+    if (scattered.split.empty()) second(whole);
+    for (const Branch& channel : scattered.split) second(channel);
     sum += surface.optics.alpha * direct_light(surface, hit.triangle, path, meeting);
     return kept * sum;
 }

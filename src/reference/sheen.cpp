@@ -20,6 +20,12 @@ double hidden(double alpha, double cosine) {
     return std::exp(cosine < 0.5 ? exponent(cosine) : 2 * exponent(0.5) - exponent(1 - cosine));
 }
 
+/// Of the fibres' ends, by the sine of their angle to the normal.
+double distribution(double alpha, double n_h) {
+    const double sine2 = std::max(0.0, 1 - n_h * n_h);
+    return (2 + 1 / alpha) * std::pow(sine2, 1 / (2 * alpha)) / (2 * optics::pi);
+}
+
 }  // namespace
 
 double alpha_of(double roughness) {
@@ -28,23 +34,22 @@ double alpha_of(double roughness) {
 }
 
 double lobe(double alpha, double n_h, double n_v, double n_l) {
-    const double sine2 = std::max(0.0, 1 - n_h * n_h);
-    const double distribution = (2 + 1 / alpha) * std::pow(sine2, 1 / (2 * alpha)) / (2 * optics::pi);
-    return distribution / ((1 + hidden(alpha, n_v) + hidden(alpha, n_l)) * 4 * n_v);
+    return distribution(alpha, n_h) / ((1 + hidden(alpha, n_v) + hidden(alpha, n_l)) * 4 * n_v);
 }
 
 double albedo(double alpha, double n_v) {
     // In the root of n·l, for what grazes counts most and changes fastest; half of the circle is as the other.
     constexpr int rings = 128, sectors = 64;
-    const double sine_v = std::sqrt(1 - n_v * n_v);
+    const double sine_v = std::sqrt(1 - n_v * n_v), hidden_v = hidden(alpha, n_v);
     double sum = 0;
     for (int i = 0; i < rings; i++) {
         const double t = (i + 0.5) / rings, n_l = t * t, sine_l = std::sqrt(1 - n_l * n_l);
+        double ring = 0;
         for (int k = 0; k < sectors; k++) {
             const double v_l = n_v * n_l + sine_v * sine_l * std::cos(optics::pi * (k + 0.5) / sectors);
-            const double n_h = (n_v + n_l) / std::sqrt(2 + 2 * v_l);
-            sum += lobe(alpha, std::min(n_h, 1.0), n_v, n_l) * 2 * t;
+            ring += distribution(alpha, std::min(1.0, (n_v + n_l) / std::sqrt(2 + 2 * v_l)));
         }
+        sum += ring * 2 * t / ((1 + hidden_v + hidden(alpha, n_l)) * 4 * n_v);
     }
     return std::min(1.0, sum * 2 * optics::pi / (rings * sectors));
 }
