@@ -70,6 +70,7 @@ static double cosine_outside(double cosine, double index) {
 }
 
 glm::dvec3 Optics::plain_reflectance(double cosine, bool leaving, Channel channel) const {
+    if (!specified && spread == 0) return glm::dvec3(optics::fresnel_dielectric(cosine, leaving ? 1 / ior : ior));
     glm::dvec3 all;
     for (int k = 0; k < 3; k++) {
         const double n = index(channel_of(k, channel));
