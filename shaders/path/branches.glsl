@@ -136,8 +136,11 @@ Facet facetOf(Surface s, Material m, Lobe lobe, vec3 incoming, Interface face, u
         f.through = throughThin(s, lobe, incoming, f.reflected);
         return f;
     }
-    const bool middle = refractRay(incoming, f.normal, face.eta, f.through);
-    f.passes = middle || (dispersive && face.disperses && any(lessThan(f.dielectric, vec3(1))));
+    f.passes = refractRay(incoming, f.normal, face.eta, f.through);
+    if (!dispersive || f.passes || !face.disperses) return f;
+    // One of the others passes all the same; of the middle one nothing does.
+    f.passes = any(lessThan(f.dielectric, vec3(1)));
+    f.through = lobe.normal;
     return f;
 }
 
@@ -154,34 +157,32 @@ void keptByGlass(Facet f, Lobe lobe, out vec3 reflected, out vec3 through) {
 }
 
 /// Shares of the light that a facet, or all of the lobe that it stands for, reflects and lets through.
-void sharesOf(Facet f, Material m, vec3 base_color, Lobe lobe, vec3 view, out vec3 reflected, out vec3 through) {
+void sharesOf(Facet f, Material m, Interface face, vec3 base_color, Lobe lobe, vec3 view, out vec3 reflected, out vec3 through) {
     const float cosine = clamp(dot(view, f.normal), 0.0, 1.0), facing = clamp(dot(view, lobe.normal), 0.0, 1.0);
     const bool compensated = (frame[0].effects & EFFECT_COMPENSATION) != 0u;
     reflected = f.dielectric;
     through = 1.0 - f.dielectric;
     if (isMirror(lobe)) {
-        reflected = mix(reflected, metalReflectance(m, base_color, cosine), m.metallic);
-    } else if (transmits(m)) {
-        const vec3 metal = metalReflectance(m, base_color, cosine);
-        if (samplesMicrofacets()) {
+        reflected = mix(reflected, metalReflectance(m, face, base_color, cosine), m.metallic);
+        return;
+    }
+    Albedos a;
+    if (compensated || !samplesMicrofacets()) a = albedosOf(m, base_color, lobe, facing);
+    vec3 metal = a.metal;
+    if (samplesMicrofacets() || (transmits(m) && !compensated)) metal = metalReflectance(m, face, base_color, cosine);
+    if (samplesMicrofacets()) {
+        const float kept = masking(lobe, f.reflected);
+        if (compensated) metal *= a.metal_gain;
+        if (transmits(m))
             keptByGlass(f, lobe, reflected, through);
-            reflected = mix(reflected, metal * masking(lobe, f.reflected), m.metallic);
-        } else {
-            // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
-            reflected = mix(reflected, metal, m.metallic);
-            if (!compensated) reflected *= splitSum(lobe.roughness, facing).x;
-        }
-    } else if (!samplesMicrofacets()) {
-        const Albedos a = albedosOf(m, base_color, lobe.roughness, facing);
-        reflected = mix(a.dielectric, a.metal, m.metallic);
+        else
+            reflected *= kept * (compensated ? a.dielectric_gain : vec3(1));
+        reflected = mix(reflected, metal * kept, m.metallic);
+    } else if (transmits(m)) {
+        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+        reflected = mix(reflected, metal, m.metallic) * (compensated ? 1.0 : a.kept);
     } else {
-        vec3 metal = metalReflectance(m, base_color, cosine);
-        if (compensated) {
-            const Albedos a = albedosOf(m, base_color, lobe.roughness, facing);
-            reflected *= a.dielectric_gain;
-            metal *= a.metal_gain;
-        }
-        reflected = mix(reflected, metal, m.metallic) * masking(lobe, f.reflected);
+        reflected = mix(a.dielectric, metal, m.metallic);
     }
 }
 
@@ -208,7 +209,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     const Lobe lobe = lobeOf(s, m);
     const Facet facet = facetOf(s, m, lobe, incoming, face, state.seed);
     vec3 reflected, through;
-    sharesOf(facet, m, s.base_color, lobe, view, reflected, through);
+    sharesOf(facet, m, face, s.base_color, lobe, view, reflected, through);
     const float below = sheened ? belowSheen(m, dot(view, s.normal)) : 1.0;
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = isMirror(lobe) ? state.medium & RAY_SEES_SUN : 0u;

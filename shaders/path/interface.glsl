@@ -33,33 +33,38 @@ vec3 channelReflectance(vec3 etas, float cosine) {
     return vec3(fresnelDielectric(cosine, etas.r), fresnelDielectric(cosine, etas.g), fresnelDielectric(cosine, etas.b));
 }
 
+/// The cosine outside of a volume whose index over that of air is 1 / eta, for one within; below 0: total internal reflection.
+float cosineOutside(float cosine, float eta) {
+    const float sine2 = (1.0 - cosine * cosine) / (eta * eta);
+    return sine2 >= 1.0 ? -1.0 : sqrt(1.0 - sine2);
+}
+
+/// Of the dielectric part, by the cosine outside: as KHR_materials_specular states it, or `plain`, and of its film.
+vec3 filmedReflectance(Material m, vec3 plain, float cosine) {
+    if ((m.flags & MATERIAL_SCHLICK) != 0u) plain = fresnelSchlick(m.f0, m.f90, cosine);
+    return filmed && m.iridescence > 0.0 ? mix(plain, filmReflectance(m, filmBase(m), cosine), m.iridescence) : plain;
+}
+
 /// Reflectance of one face of indices `etas` at `cosine` ≥ 0 on the incoming side; `leaving`: from inside of the volume. By the index of
 /// refraction alone it is the exact one; KHR_materials_specular and an infinite index are Schlick's between f0 and f90, at the
 /// angle outside.
 vec3 faceReflectance(Material m, vec3 etas, float cosine, bool leaving) {
-    const bool stated = (m.flags & MATERIAL_SCHLICK) != 0u, film = filmed && m.iridescence > 0.0;
     vec3 plain = vec3(0);
-    if (!stated) {
+    if ((m.flags & MATERIAL_SCHLICK) == 0u) {
         plain = dispersive ? channelReflectance(etas, cosine) : vec3(fresnelDielectric(cosine, etas.g));
-        if (!film) return plain;
+        if (!filmed || m.iridescence == 0.0) return plain;
     }
-    if (leaving) {
-        const float sine2 = (1.0 - cosine * cosine) * m.ior * m.ior;
-        if (sine2 >= 1.0) return vec3(1);
-        cosine = sqrt(1.0 - sine2);
+    if (!leaving) return filmedReflectance(m, plain, cosine);
+    if (!dispersive || all(equal(etas, etas.ggg))) {
+        const float outside = cosineOutside(cosine, etas.g);
+        return outside < 0.0 ? vec3(1) : filmedReflectance(m, plain, outside);
     }
-    if (stated) plain = fresnelSchlick(m.f0, m.f90, cosine);
-    return film ? mix(plain, filmReflectance(m, filmBase(m), cosine), m.iridescence) : plain;
-}
-vec3 dielectricReflectance(Material m, float cosine, bool leaving) {
-    return faceReflectance(m, vec3(leaving ? 1.0 / m.ior : m.ior), cosine, leaving);
-}
-
-/// Of the metal.
-vec3 metalReflectance(Material m, vec3 base_color, float cosine) {
-    const vec3 plain = fresnelSchlick(base_color, 1.0, cosine);
-    if (!filmed || m.iridescence == 0.0) return plain;
-    return mix(plain, filmReflectance(m, metalIndex(base_color), cosine), m.iridescence);
+    vec3 each = vec3(1);
+    for (int k = 0; k < 3; k++) {
+        const float outside = cosineOutside(cosine, etas[k]);
+        if (outside >= 0.0) each[k] = filmedReflectance(m, plain, outside)[k];
+    }
+    return each;
 }
 
 /// A surface as a ray meets it.
@@ -91,6 +96,14 @@ vec3 interfaceReflectance(Material m, Interface face, float cosine) {
     if (face.between) return dispersive ? channelReflectance(face.etas, cosine) : vec3(fresnelDielectric(cosine, face.eta));
     const vec3 once = faceReflectance(m, face.etas, cosine, face.leaving);
     return transmits(m) && (m.flags & MATERIAL_THIN) != 0u ? 2.0 * once / (1.0 + once) : once;
+}
+
+/// Of the metal.
+vec3 metalReflectance(Material m, Interface face, vec3 base_color, float cosine) {
+    const vec3 plain = fresnelSchlick(base_color, 1.0, cosine);
+    if (!filmed || m.iridescence == 0.0 || face.between) return plain;
+    const float outside = face.leaving ? cosineOutside(cosine, face.eta) : cosine;
+    return outside < 0.0 ? vec3(1) : mix(plain, filmReflectance(m, metalIndex(base_color), outside), m.iridescence);
 }
 
 #endif

@@ -41,7 +41,7 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
     Shade shade;
     shade.lobe = lobeOf(s, m);
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
-    const bool mirror = isMirror(shade.lobe), opaque = !transmits(m);
+    const bool mirror = isMirror(shade.lobe);
     shade.dielectric_gain = shade.metal_gain = vec3(1);
     const vec3 scattered = vec3((1.0 - m.metallic) * (1.0 - m.transmission) / PI);
     shade.diffuse = scattered * s.base_color;
@@ -50,17 +50,15 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
         shade.seeping = scattered * m.seeping_share * m.seeping_color * exp(-m.absorption * m.thickness);
         shade.diffuse *= 1.0 - m.seeping_share;
     }
-    if (mirror) {
-        shade.mirrored = dielectricReflectance(m, cosine, leavesVolume(m, s.front));
-    } else {
-        const Albedos a = albedosOf(m, s.base_color, shade.lobe.roughness, cosine);
-        shade.mirrored = a.dielectric;
-        // Glass's is restored microfacet by microfacet.
-        if (opaque) {
-            shade.dielectric_gain = a.dielectric_gain;
-            shade.metal_gain = a.metal_gain;
-        } else {
-            shade.mirrored /= a.dielectric_gain;
+    shade.mirrored = interfaceReflectance(m, interfaceInAir(m, s.front, 0u), cosine);
+    if (!mirror) {
+        const Albedos a = albedosOf(m, s.base_color, shade.lobe, cosine);
+        shade.metal_gain = a.metal_gain;
+        if (!transmits(m)) {
+            shade.mirrored = a.dielectric;
+            shade.dielectric_gain = a.dielectric_gain;  // glass's is restored microfacet by microfacet
+        } else if ((frame[0].effects & EFFECT_COMPENSATION) == 0u) {
+            shade.mirrored *= a.kept;
         }
     }
     shade.below_coat = 1.0 - coatShare(m, dot(view, s.coat_normal));
@@ -72,14 +70,14 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
 bool lightSeeps(Surface s, Shade shade, vec3 to_light) { return seeping && shade.seeping != vec3(0) && dot(s.normal, to_light) < 0.0; }
 
 /// What a microfacet of rough glass reflects of what its two ways keep (keptByGlass), over what it reflects without compensation.
-vec3 glassGain(Surface s, Material m, Lobe lobe, vec3 view, vec3 to_light, vec3 h, vec3 reflectance) {
-    if ((frame[0].effects & (EFFECT_COMPENSATION)) == 0u || frame[0].spp <= 1u) return vec3(1);
+vec3 glassGain(Material m, Interface face, Lobe lobe, vec3 view, vec3 to_light, vec3 h, vec3 reflectance) {
+    if ((frame[0].effects & EFFECT_COMPENSATION) == 0u || frame[0].spp <= 1u) return vec3(1);
     vec3 through;
     bool passes = true;
     if ((m.flags & MATERIAL_THIN) != 0u)
         through = to_light - 2.0 * dot(to_light, lobe.normal) * lobe.normal;
     else
-        passes = refractRay(-view, h, interfaceInAir(m, s.front, 0u).eta, through);
+        passes = refractRay(-view, h, face.eta, through);
     return 1.0 / max(reflectance * masking(lobe, to_light) + (1.0 - reflectance) * (passes ? masking(lobe, -through) : 0.0), vec3(1e-6));
 }
 
@@ -100,12 +98,13 @@ vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
     const float v_h = clamp(dot(view, h), 0.0, 1.0);
     vec3 result = vec3(0);
     if (n_l > 0.0) {
-        const vec3 dielectric = dielectricReflectance(m, v_h, leavesVolume(m, s.front));
+        const Interface face = interfaceInAir(m, s.front, 0u);
+        const vec3 dielectric = interfaceReflectance(m, face, v_h);
         result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
         if (!isMirror(shade.lobe)) {
             vec3 gain = shade.dielectric_gain;
-            if (transmits(m)) gain = glassGain(s, m, shade.lobe, view, to_light, h, dielectric);
-            result += mix(dielectric * gain, metalReflectance(m, s.base_color, v_h) * shade.metal_gain, m.metallic) * highlight(shade.lobe, view, to_light, h);
+            if (transmits(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
+            result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.metal_gain, m.metallic) * highlight(shade.lobe, view, to_light, h);
         }
         if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);
     }

@@ -9,13 +9,15 @@ struct Lobe {
     vec3 along;       ///< tangent along which alpha.x counts; unused where both are the same
     vec2 alpha;
     float roughness;  ///< perceptual; of a stretched lobe that of a round one of the same area
+    float mean_roughness;  ///< that of a round one that masks about as much
+    float straight;   ///< how much of the mean microfacet is the normal
     bool round;
 };
 
 /// Is it a mirror?
 bool isMirror(Lobe lobe) { return lobe.roughness < MIRROR_ROUGHNESS; }
 
-Lobe roundLobe(vec3 normal, float roughness) { return Lobe(normal, vec3(0), vec2(roughness * roughness), roughness, true); }
+Lobe roundLobe(vec3 normal, float roughness) { return Lobe(normal, vec3(0), vec2(roughness * roughness), roughness, roughness, 1.0, true); }
 
 /// Of a surface below its coat (KHR_materials_anisotropy).
 Lobe lobeOf(Surface s, Material m) {
@@ -24,7 +26,10 @@ Lobe lobeOf(Surface s, Material m) {
     const float narrow = max(lobe.alpha.y, MIRROR_ROUGHNESS * MIRROR_ROUGHNESS);
     lobe.alpha = vec2(mix(narrow, 1.0, s.stretch * s.stretch), narrow);
     lobe.along = s.along;
-    lobe.roughness = sqrt(sqrt(lobe.alpha.x * lobe.alpha.y));
+    lobe.roughness = max(sqrt(sqrt(lobe.alpha.x * lobe.alpha.y)), MIRROR_ROUGHNESS);  // rounding makes no mirror
+    lobe.mean_roughness = sqrt(sqrt(0.5 * dot(lobe.alpha, lobe.alpha)));
+    const float straight = 1.0 - s.stretch * (1.0 - m.roughness), straight2 = straight * straight;
+    lobe.straight = straight2 * straight2;
     lobe.round = false;
     return lobe;
 }
@@ -57,9 +62,7 @@ float highlight(Lobe lobe, vec3 view, vec3 to_light, vec3 h) {
 vec3 meanMicrofacet(Lobe lobe, vec3 view) {
     if (!stretched || lobe.round) return lobe.normal;
     const vec3 across = cross(lobe.normal, lobe.along), facing = view - across * dot(view, across);
-    const float strength = sqrt(clamp((lobe.alpha.x - lobe.alpha.y) / (1.0 - lobe.alpha.y), 0.0, 1.0)), roughness = sqrt(lobe.alpha.y);
-    const float straight = 1.0 - strength * (1.0 - roughness), straight2 = straight * straight;
-    return directionOr(mix(directionOr(facing, lobe.normal), lobe.normal, straight2 * straight2), lobe.normal);
+    return directionOr(mix(directionOr(facing, lobe.normal), lobe.normal, lobe.straight), lobe.normal);
 }
 
 /// A visible normal; `random` in [0, 1).

@@ -3,6 +3,7 @@
 #define PEELRAY_TABLES_GLSL
 
 #include "path/interface.glsl"
+#include "path/lobe.glsl"
 #include "path/tables.h"
 
 /// A square table's entry for a roughness and a cosine, bilinear in their square roots.
@@ -25,18 +26,22 @@ vec3 compensation(vec3 f0, float kept) { return 1.0 + f0 * ((1.0 - kept) / kept)
 struct Albedos {
     vec3 dielectric, metal;
     vec3 dielectric_gain, metal_gain;  ///< of it: what is scattered more than once, as factors
+    float kept;  ///< mean masking
 };
 
 /// `cosine`: between the view and the normal.
-Albedos albedosOf(Material m, vec3 base_color, float roughness, float cosine) {
-    const vec4 means = splitSum(roughness, cosine);
+Albedos albedosOf(Material m, vec3 base_color, Lobe lobe, float cosine) {
+    const vec4 means = splitSum(lobe.mean_roughness, cosine);
     Albedos a;
+    a.kept = means.x;
     a.dielectric = (m.flags & MATERIAL_SCHLICK) != 0u ? m.f0 * means.x + (m.f90 - m.f0) * means.z
                                                       : vec3(clamp(m.f0.x * means.x + dot(m.fresnel_fit, means.yzw), 0.0, 1.0));
     a.metal = base_color * means.x + (1.0 - base_color) * means.z;
     vec3 f0 = normalReflectance(m), metal_f0 = base_color;
     if (filmed && m.iridescence > 0.0) {
-        const vec3 film = filmReflectance(m, filmBase(m), cosine), metal_film = filmReflectance(m, metalIndex(base_color), cosine);
+        // Where the microfacets are that have Schlick's mean: at grazing angles the normal's own says too much.
+        const float mean = 1.0 - pow(clamp(means.z / means.x, 0.0, 1.0), 0.2);
+        const vec3 film = filmReflectance(m, filmBase(m), mean), metal_film = filmReflectance(m, metalIndex(base_color), mean);
         a.dielectric = mix(a.dielectric, film * means.x, m.iridescence);
         a.metal = mix(a.metal, metal_film * means.x, m.iridescence);
         f0 = mix(f0, film, m.iridescence);

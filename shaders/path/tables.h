@@ -16,7 +16,7 @@
 
 // What a white sheen reflects of white light (Estevez, Kulla: Production Friendly Microfacet Sheen BRDF, 2017), in the
 // first value, by roughness and cosine alike.
-#define SHEEN_SIDE 32
+#define SHEEN_SIDE 64
 
 // The light that a thin film's two faces reflect interferes: entry i is the mean of cos(2π D / λ) over the wavelengths that
 // red, green and blue see, for the difference D = i · FILM_STEP of the two ways. It fades as D grows. A step of a fiftieth

@@ -5,6 +5,8 @@
 #ifndef PEELRAY_THIN_FILM_GLSL
 #define PEELRAY_THIN_FILM_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "path/shading_numbers.h"
 #include "path/tables.h"
 
@@ -32,7 +34,8 @@ vec3 thinFilm(float thickness, float index, vec3 base, float cosine) {
     const vec3 across = across1 * across2, along = along1 * along2;
     // 1 - R = T (1 + 2 Σ (-q)^k cos(k φ)), q: the product of the amplitudes, T: what passes without interference.
     vec3 across_sum = vec3(1), along_sum = vec3(1), across_power = vec3(2), along_power = vec3(2);
-    for (int k = 1; k <= FILM_ORDERS; k++) {
+    // Written out, this would be most of what a compiler has to do for a pass that shades.
+    [[dont_unroll]] for (int k = 1; k <= FILM_ORDERS; k++) {
         const vec3 mean = filmMean(2.0 * float(k) * index * thickness * within);
         across_power *= -across;
         along_power *= -along;

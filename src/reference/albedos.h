@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -17,6 +18,8 @@ class Albedos {
         glm::dvec3 dielectric{0};        ///< share of the dielectric part
         double normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
         double masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
+        /// To the microfacet whose grazing light, as Schlick's formula has it, is the mean.
+        double cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
         glm::dvec3 metal(const glm::dvec3& base_color) const { return base_color * normal + grazing; }
     };
 

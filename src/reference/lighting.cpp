@@ -55,9 +55,14 @@ Shader::Seen Shader::seen(const Surface& s, const Path& path) const {
     seen.sheen = below_sheen(s, seen.n_v);
     if (m.metallic == 1 || m.transmission == 1) return seen;
     // The share that scatter() gives to the reflection.
-    seen.scattered = 1 - largest(m.lobe_roughness() < MIRROR_ROUGHNESS
-                                     ? m.face_reflectance(seen.n_v, m.leaves(s.front), Channel::green)
-                                     : mean_reflectance(s, seen.n_v).dielectric);
+    glm::dvec3 mirrored = m.wall_reflectance(seen.n_v, m.leaves(s.front), Channel::green);
+    if (m.lobe_roughness() >= MIRROR_ROUGHNESS) {
+        if (!m.transmits())
+            mirrored = mean_reflectance(s, seen.n_v).dielectric;
+        else if (!compensates(m))
+            mirrored *= context_.albedos.at(s, seen.n_v).masking();
+    }
+    seen.scattered = 1 - largest(mirrored);
     return seen;
 }
 
@@ -69,12 +74,13 @@ glm::dvec3 Shader::specular(const Surface& s, const Path& path, const Parts& fre
     const glm::dvec3 half = glm::normalize(to_light - path.direction);
     const double shape = highlight(lobe, -path.direction, to_light);
     const bool sampled = context_.settings.spp > 1;
-    if (!m.transmits() || !compensates(m) || !sampled) return (fresnel * compensation(s, n_v)).of(m) * shape;
+    const Parts gained = fresnel * compensation(s, n_v);
+    if (!m.transmits() || !compensates(m) || !sampled) return gained.of(m) * shape;
     const double kept = lobe.masking(to_light);
     const auto onward = m.thin ? std::optional(to_light - 2 * glm::dot(to_light, s.normal) * s.normal)
                                : refract_ray(path.direction, half, m.leaves(s.front) ? 1 / m.ior : m.ior);
     const Shares glass = rough_glass(fresnel.dielectric, kept, onward ? lobe.masking(-*onward) : 0);
-    return glm::mix(glass.reflected / kept, fresnel.metal, m.metallic) * shape;
+    return glm::mix(glass.reflected / kept, gained.metal, m.metallic) * shape;
 }
 
 /// Reflected share of light from `to_light`, times the cosine: Lambert below GGX, both below the sheen, all below the
@@ -89,7 +95,7 @@ glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& s
     glm::dvec3 share(0);
     if (n_l > 0) {
         const bool leaving = m.leaves(s.front);
-        const Parts fresnel{m.face_reflectance(v_h, leaving, Channel::green),
+        const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
         share = diffuse * (1 - m.behind) * (1 - largest(fresnel.dielectric)) * m.base_color * n_l;
         share += specular(s, path, fresnel, seen.n_v, to_light);

@@ -42,24 +42,28 @@ bool Shader::compensates(const Optics& m) const {
 /// microfacet models, 2019).
 Shader::Parts Shader::compensation(const Surface& s, double n_v) const {
     const Optics& m = s.optics;
-    if (!compensates(m) || m.transmits()) return {};
-    const double kept = context_.albedos.at(s, n_v).masking();
+    if (!compensates(m)) return {};
+    const Albedos::Means means = context_.albedos.at(s, n_v);
+    const double kept = means.masking();
     glm::dvec3 dielectric = m.f0, metal = m.base_color;
     if (m.film > 0) {
-        dielectric = glm::mix(dielectric, m.film_on_dielectric(n_v, false), m.film);
-        if (m.metallic > 0) metal = glm::mix(metal, m.film_on_metal(n_v, false), m.film);
+        dielectric = glm::mix(dielectric, m.film_on_dielectric(means.cosine(), false), m.film);
+        if (m.metallic > 0) metal = glm::mix(metal, m.film_on_metal(means.cosine(), false), m.film);
     }
+    // Of glass each microfacet's own light goes the other way: rough_glass().
+    if (m.transmits()) dielectric = glm::dvec3(0);
     return {1.0 + dielectric * ((1 - kept) / kept), 1.0 + metal * ((1 - kept) / kept)};
 }
 
-/// Of light from everywhere, what a rough surface reflects.
+/// Of light from everywhere, what a rough surface reflects. What a film reflects, at the angle of its mean microfacet.
 Shader::Parts Shader::mean_reflectance(const Surface& s, double n_v) const {
     const Optics& m = s.optics;
     const Albedos::Means means = context_.albedos.at(s, n_v);
     Parts mean{means.dielectric, means.metal(m.base_color)};
+    const double kept = means.masking(), cosine = means.cosine();
     if (m.film > 0) {
-        mean.dielectric = glm::mix(mean.dielectric, m.film_on_dielectric(n_v, false) * means.masking(), m.film);
-        if (m.metallic > 0) mean.metal = glm::mix(mean.metal, m.film_on_metal(n_v, false) * means.masking(), m.film);
+        mean.dielectric = glm::mix(mean.dielectric, m.film_on_dielectric(cosine, false) * kept, m.film);
+        if (m.metallic > 0) mean.metal = glm::mix(mean.metal, m.film_on_metal(cosine, false) * kept, m.film);
     }
     return mean * compensation(s, n_v);
 }

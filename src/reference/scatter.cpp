@@ -71,10 +71,11 @@ Shader::Shares Shader::shares(const Surface& s, const Lobe& lobe, const Path& pa
     const double kept = sampled ? lobe.masking(mirrored(path.direction, half)) : context_.albedos.at(s, n_v).masking();
     if (!m.transmits()) return {(fresnel * compensation(s, n_v)).of(m) * kept, passed};
     if (!compensates(m)) return {fresnel.of(m) * kept, passed};
-    if (!sampled) return {fresnel.of(m), passed};
+    if (!sampled) return {glm::mix(fresnel.dielectric, mean_reflectance(s, n_v).metal, m.metallic), passed};
     const auto onward = refracted(s, path, meeting, half);
     const Shares glass = rough_glass(fresnel.dielectric, kept, onward ? lobe.masking(-*onward) : 0);
-    return {glm::mix(glass.reflected, fresnel.metal * kept, m.metallic), glass.refracted};
+    const glm::dvec3 metal = fresnel.metal * compensation(s, n_v).metal * kept;
+    return {glm::mix(glass.reflected, metal, m.metallic), glass.refracted};
 }
 
 /// Does light that is refracted here come apart?

@@ -53,6 +53,12 @@ double Optics::lobe_roughness() const {
     return std::max(MIRROR_ROUGHNESS, std::pow(alpha.x * alpha.y, 0.25));
 }
 
+double Optics::mean_roughness() const {
+    if (anisotropy == 0) return roughness;
+    const glm::dvec2 a = alphas();
+    return std::pow(glm::dot(a, a) / 2, 0.25);
+}
+
 double Optics::index(Channel channel) const {
     const double side = channel == Channel::red ? -1 : channel == Channel::blue ? 1 : 0;
     return std::max(1.0, ior + side * spread);

@@ -50,6 +50,8 @@ struct Optics {
     glm::dvec2 alphas() const;
     /// Of the round lobe that is as large: what decides by a roughness goes by this one.
     double lobe_roughness() const;
+    /// Of the round lobe that masks about as much.
+    double mean_roughness() const;
     /// Index of refraction, ≥ 1; all: the middle one.
     double index(Channel channel) const;
     /// Of one face of the dielectric part; `cosine` ≥ 0 on the incoming side, `leaving`: from inside.

@@ -134,7 +134,7 @@ TEST_F(EnergyTest, HighlightsOnGlassTakeTheirShareOfWhatIsKept) {
     const auto masking = [&](double c) { return 2 / (1 + std::sqrt(1 + alpha * alpha * (1 / (c * c) - 1))); };
     const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine), to_sun = glm::normalize(glm::dvec3(-0.9, 0.4, 1));
     const glm::dvec3 half = glm::normalize(view + to_sun);
-    const double v_h = glm::dot(view, half), reflected = fresnel(v_h, 1, 1.5);
+    const double v_h = glm::dot(view, half), face = fresnel(v_h, 1, 1.5);
     // Snell's law in vectors.
     const glm::dvec3 refracted = -view / 1.5 + (v_h / 1.5 - std::sqrt(1 - (1 - v_h * v_h) / 2.25)) * half;
     for (const bool thin : {true, false}) {
@@ -143,6 +143,7 @@ TEST_F(EnergyTest, HighlightsOnGlassTakeTheirShareOfWhatIsKept) {
         Stage stage;
         stage.add(thin ? texture_square() : box({-1, -1, -0.5f}, {1, 1, 0}), m);
         stage.sun(-to_sun, glm::vec3(2));
+        const double reflected = thin ? 2 * face / (1 + face) : face;  // of both faces
         const double onward = masking(thin ? to_sun.z : -refracted.z);
         const double kept = reflected * masking(to_sun.z) + (1 - reflected) * onward;
         for (const bool compensated : {true, false}) {
