@@ -13,6 +13,7 @@ BUFFER(readonly, 12, Ray, rays)
 BUFFER(readonly, 13, Hit, hits)
 BUFFER(writeonly, 14, AovSurface, aovs)
 BUFFER(readonly, 15, uint, triangle_ids)
+BUFFER(readonly, 16, uint, triangle_objects)
 #include "path/cone.glsl"
 #include "path/frame.glsl"
 #include "view/camera.glsl"
@@ -35,6 +36,7 @@ void main() {
         record.albedo = vec4(s.base_color, 1);
         record.position = vec4(s.position, 1);
         record.triangle = float(instances[hit.instance].info.first_id + triangle_ids[hit.triangle]);
+        record.instance = float(instances[hit.instance].info.first_object + triangle_objects[hit.triangle]);
         record.material = float(s.material);
     }
     aovs[pixel.y * frame[0].width + pixel.x] = record;

@@ -27,8 +27,10 @@ void AovPictures::render(FrameState& f, Aovs& aovs) {
                                         {{"rays", f.queues.level(0).rays},
                                          {"hits", f.queues.level(0).hits},
                                          {"aovs", buffer_},
-                                         {"triangle_ids", f.scene.triangle_ids}}),
+                                         {"triangle_ids", f.scene.triangle_ids},
+                                         {"triangle_objects", f.scene.triangle_objects}}),
                        p, groups_for(p.capacity, 64));
+        if (settings.motion) motion_.record(f, p, buffer_);
     }
     f.commands.submit();
     const auto records = f.commands.download<AovSurface>(buffer_, pixels);
