@@ -122,18 +122,17 @@ TEST_F(MovingTest, AFrameIsTheSameAloneAndAfterOthers) {
 }
 
 TEST_F(MovingTest, LookingBackChangesNothingElse) {
-    for (const char* name : {"", "builtin:blob:2000", "builtin:waves:800", "builtin:particles:200"}) {
+    for (const char* name : {"", "builtin:waves:800", "builtin:particles:200"}) {
         SCOPED_TRACE(name);
         Scene scene = *name ? load_scene(name) : three_balls();
-        complete_targets(scene);
         RenderSettings plain = small(scene.cameras.empty() ? kUsualView : scene.cameras[0]);
         plain.aovs = true;
         RenderSettings looking = plain;
         looking.motion = true;
         looking.camera_before = looking.camera;
         const auto never = renderer_in(scene, "0", 0, sky), always = renderer_in(scene, "0", 0, sky);
-        // On, back, and twice the same.
-        for (const double time : {0.4, 0.5, 0.2, 0.2}) {
+        // On, and back.
+        for (const double time : {0.4, 0.5, 0.2}) {
             SCOPED_TRACE(time);
             const Moment before = moment_of(scene, "0", time - 0.1);
             looking.moment_before = &before;
@@ -143,12 +142,14 @@ TEST_F(MovingTest, LookingBackChangesNothingElse) {
             EXPECT_EQ(one.stats.moved, other.stats.moved);
             EXPECT_EQ(one.stats.rebuilt, other.stats.rebuilt);
             EXPECT_EQ(one.stats.frame_bytes, other.stats.frame_bytes);
-            const RenderResult again = always->render(looking),
-                               fresh = renderer_in(scene, "0", time, sky)->render(looking);
-            EXPECT_EQ(again.aovs.motion, other.aovs.motion);
-            EXPECT_EQ(fresh.aovs.motion, other.aovs.motion);
+            EXPECT_EQ(one.aovs.motion, std::vector<glm::vec2>(48 * 48, glm::vec2(0)));
             EXPECT_GT(std::ranges::count_if(other.aovs.motion, [](const auto& v) { return glm::length(v) > 0.05f; }),
                       20);
+            if (time > 0.2) continue;
+            const RenderResult again = always->render(looking);
+            expect_identical(one, again);
+            EXPECT_EQ(again.aovs.motion, other.aovs.motion);
+            EXPECT_EQ(renderer_in(scene, "0", time, sky)->render(looking).aovs.motion, other.aovs.motion);
         }
     }
 }
