@@ -75,7 +75,7 @@ TEST(Workspace, TheCameraGoesRound) {
 }
 
 TEST(Workspace, MotionIsWhatTheFrameBeforeShowsByEveryTracer) {
-    for (const char* scene : {"builtin:waves:200", "builtin:particles:1000", "builtin:walker"}) {
+    for (const char* scene : {"builtin:waves:200", "builtin:particles:1000"}) {
         SCOPED_TRACE(scene);
         std::vector<std::vector<glm::vec2>> motions;
         std::vector<std::vector<float>> triangles;
