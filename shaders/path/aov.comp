@@ -24,13 +24,11 @@ void main() {
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
     AovSurface record;
-    record.seen = 0.0;
 #define AOV_NOTHING(name, type, channels, nothing) record.name = type(nothing);
-    SURFACE_AOVS(AOV_NOTHING)
+    SEEN_AOVS(AOV_NOTHING)
     const Hit hit = hits[i];
     if (hit.triangle != NO_TRIANGLE) {
         const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), rays[i].direction, coneAt(frame[0].cone, hit.t).x);
-        record.seen = 1.0;
         record.depth = hit.t;
         record.normal = vec4(s.normal, 0);
         record.albedo = vec4(s.base_color, 1);

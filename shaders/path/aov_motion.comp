@@ -16,7 +16,7 @@ BUFFER(readonly, 3, GpuInstance, instances)
 BUFFER(readonly, 4, Hit, hits)
 BUFFER(readonly, 5, vec3, positions_before)  // from first_moving on
 BUFFER(readonly, 6, GpuTransform, transforms_before)
-BUFFER(writeonly, 7, AovSurface, aovs)
+BUFFER(writeonly, 7, AovMotion, motions)
 #include "common/placed.glsl"
 #include "view/camera.glsl"
 
@@ -43,13 +43,8 @@ vec2 placeInPicture(vec3 p, vec3 right, vec3 up, vec3 forward, bool orthographic
     return pixels;
 }
 
-void main() {
-    const uint i = GLOBAL_INDEX;
-    if (i >= params.capacity) return;
-    const uvec2 pixel = recordPixel(i, params.first_row);
-    if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
-    const Hit hit = hits[i];
-    if (hit.triangle == NO_TRIANGLE) return;
+/// The motion of a hit.
+vec2 motionOf(Hit hit) {
     const vec2 uv = clamp(vec2(hit.u, hit.v), vec2(0), vec2(1));  // as surfaceAt does
     const vec3 weights = vec3(max(0.0, 1.0 - uv.x - uv.y), uv);
     vec3 a, b, c;
@@ -62,8 +57,20 @@ void main() {
     c = placedFrom(to_world, positionBefore(corners.z), params.eye);
     const vec3 before = mixed(a, b, c, weights);
     const bool orthographic = params.orthographic != 0u;
-    if (!orthographic && !(product(before, params.forward) > params.near)) return;  // behind the camera: it had no place
-    aovs[pixel.y * frame[0].width + pixel.x].motion =
-        placeInPicture(before, params.right, params.up, params.forward, orthographic) -
-        placeInPicture(now, frame[0].right, frame[0].up, frame[0].forward, frame[0].orthographic != 0u);
+    if (!orthographic && !(product(before, params.forward) > params.near)) return vec2(0);  // behind the camera
+    return placeInPicture(before, params.right, params.up, params.forward, orthographic) -
+           placeInPicture(now, frame[0].right, frame[0].up, frame[0].forward, frame[0].orthographic != 0u);
+}
+
+void main() {
+    const uint i = GLOBAL_INDEX;
+    if (i >= params.capacity) return;
+    const uvec2 pixel = recordPixel(i, params.first_row);
+    if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
+    AovMotion record;
+#define AOV_NOTHING(name, type, channels, nothing) record.name = type(nothing);
+    MOTION_AOVS(AOV_NOTHING)
+    const Hit hit = hits[i];
+    if (hit.triangle != NO_TRIANGLE) record.motion = motionOf(hit);
+    motions[pixel.y * frame[0].width + pixel.x] = record;
 }

@@ -10,17 +10,23 @@
 //   depth     distance along the camera ray
 //   position  w: 1 where there is a surface
 //   triangle, instance, material: numbers; of an instance the one of its Geometry::Object
-//   motion    from where the point is in the picture to where it was at the moment before, pixels, right and up: set in
-//             aov_motion.comp, where it is asked for
-#define SURFACE_AOVS(AOV)                     \
+#define SEEN_AOVS(AOV)                        \
     AOV(depth, float, distance, AOV_INFINITY) \
     AOV(normal, vec4, vector, 0)              \
     AOV(albedo, vec4, color, 0)               \
     AOV(position, vec4, vector, 0)            \
     AOV(triangle, float, index, -1)           \
     AOV(instance, float, index, -1)           \
-    AOV(material, float, index, -1)           \
-    AOV(motion, vec2, motion, 0)
+    AOV(material, float, index, -1)
+
+// And how it moves, made only where it is asked for: set in aov_motion.comp and in src/reference/path_tracer.cpp.
+//   motion    from where the point is in the picture to where it was at the moment before, pixels, right and up
+#define MOTION_AOVS(AOV) AOV(motion, vec2, motion, 0)
+
+// All of what is seen.
+#define SURFACE_AOVS(AOV) \
+    SEEN_AOVS(AOV)        \
+    MOTION_AOVS(AOV)
 
 // What the paper sets up for every mirror ray (its Figure 7): set in ray_setup_store.comp and in
 // src/reference/path_tracer.cpp.

@@ -26,11 +26,12 @@ void MotionPicture::look_back(FrameState& f, const Scene& source, const Moment& 
         ensure_size(f.device, positions_, "where vertices were", bytes);
         f.commands.copy(f.scene.triangles.positions, positions_, bytes, first);
     }
+    ensure_size(f.device, motions_, "motion in the picture", f.pixels() * sizeof(AovMotion));
     f.commands.submit();
     f.scene.pose(f.commands, source, now);
 }
 
-void MotionPicture::record(FrameState& f, const LevelParams& band, const Buffer& aovs) const {
+void MotionPicture::record(FrameState& f, const LevelParams& band) const {
     MotionParams params = params_;
     params.capacity = band.capacity;
     params.first_row = band.first_row;
@@ -42,8 +43,17 @@ void MotionPicture::record(FrameState& f, const LevelParams& band, const Buffer&
                     {"hits", f.queues.level(0).hits},
                     Binding::if_used("positions_before", positions_),
                     {"transforms_before", transforms_},
-                    {"aovs", aovs}},
+                    {"motions", motions_}},
                    params, groups_for(params.capacity, 64));
+}
+
+void MotionPicture::store(FrameState& f, Aovs& aovs) const {
+    std::vector<AovMotion> records(f.pixels(), AovMotion{});
+    if (f.settings.motion) records = f.commands.download<AovMotion>(motions_, records.size());
+#define AOV_STORE(name, type, channels, nothing) \
+    for (const AovMotion& record : records) aovs.name.push_back(record.name);
+    MOTION_AOVS(AOV_STORE)
+#undef AOV_STORE
 }
 
 }  // namespace peelray

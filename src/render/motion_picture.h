@@ -12,13 +12,16 @@ class MotionPicture {
     /// from moment to moment, need not start again. `view`: of the camera at the moment before. Submits.
     void look_back(FrameState& f, const Scene& source, const Moment& before, const Moment& now,
                    const Assembly& assembly, const View& view);
-    /// Records the motion of a band's hits, which level 0 holds, into their AovSurface.
-    void record(FrameState& f, const LevelParams& band, const Buffer& aovs) const;
+    /// Records the motion of a band's hits, which level 0 holds.
+    void record(FrameState& f, const LevelParams& band) const;
+    /// That of all pixels, after the last band was submitted; where nothing was asked for, 0.
+    void store(FrameState& f, Aovs& aovs) const;
 
   private:
     MotionParams params_{};
     Buffer positions_;   ///< vec3 of each vertex that changes from moment to moment
     Buffer transforms_;  ///< GpuTransform of each instance
+    Buffer motions_;     ///< AovMotion a pixel
 };
 
 }  // namespace peelray
