@@ -113,6 +113,20 @@ struct RaySetupParams {
 };
 SHARED_SIZE(RaySetupParams, 24);
 
+/// The camera at the moment before, as in Frame, and a band of the picture.
+struct MotionParams {
+    vec3 eye;
+    float near;
+    vec3 right;
+    uint orthographic;
+    vec3 up;
+    uint first_moving;  ///< from this vertex on positions change from moment to moment
+    vec3 forward;
+    uint capacity;   ///< level 0's hits
+    uint first_row;  ///< of the band, a multiple of 8
+};
+SHARED_SIZE(MotionParams, 68);
+
 #ifdef __cplusplus
 }  // namespace peelray
 #endif

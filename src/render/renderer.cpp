@@ -106,6 +106,7 @@ struct Renderer::Impl {
     void prepare_view();
     void prepare_maps();
     void prepare_queues();
+    void look_back();
     FrameMeter render_frame(const Progress& progress);
     void describe_tracer();
     void render_maps(FrameMeter& meter, const Progress& progress);
@@ -206,6 +207,13 @@ void Renderer::Impl::prepare_queues() {
     f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.settings.bounces + 1,
                       f.scene.splits, f.lights_per_hit(), f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
+}
+
+/// For Aovs::motion.
+void Renderer::Impl::look_back() {
+    const PictureSettings& s = f.settings;
+    const View view = make_view(s.camera_before, float(s.width) / float(s.height), box.lower, box.upper);
+    aovs.motion().look_back(f, source, s.moment_before ? *s.moment_before : moment, moment, assembly, view);
 }
 
 /// The stages are those of docs/frame.md.
@@ -351,6 +359,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const Progress& pr
     Device& device = r.f.device;
     const MemoryPart part(device, "frame");
     r.prepare(settings);
+    if (settings.aovs && settings.motion) r.look_back();
 
     RenderResult result;
     Measurement measurement(settings.repeat);

@@ -15,6 +15,8 @@
 
 namespace peelray {
 
+struct Moment;
+
 /// What a picture is to look like, whoever makes it. Defaults are those of the command line.
 struct PictureSettings {
     uint32_t width = 1280, height = 1024;  ///< pixels
@@ -31,6 +33,11 @@ struct PictureSettings {
     Tonemap tonemap = Tonemap::neutral;
     bool aovs = false;       ///< also the auxiliary pictures
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
+    bool motion = false;     ///< and Aovs::motion, which else is 0
+    Camera camera_before;    ///< for `motion`: where the camera was at the moment before
+    /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
+    /// reference needs what is generated placed in it (Simulation).
+    const Moment* moment_before = nullptr;
 };
 
 /// Auxiliary pictures at the pixel centres (path/aov_table.h); width·height entries each, row 0 at the top.
