@@ -103,11 +103,9 @@ Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
 /// A ray to the sky in front of the surface or behind it. One cosine-distributed direction per sample: its mean is the sky that the
 /// surface really sees.
 Ray skyRay(Surface s, uint seed, bool seeps) {
-    const vec2 random = randomPair(seed, params.sample_index, RANDOM_SKY);
-    vec3 t, b;
-    tangents(s.normal, t, b);
-    const float r = sqrt(random.x), phi = 2.0 * PI * random.y, infinity = uintBitsToFloat(0x7f800000u);
-    const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
+    const vec3 sampled = cosineDirection(s.normal, randomPair(seed, params.sample_index, RANDOM_SKY));
+    const vec3 direction = aboveSurface(sampled, s.geometric);
+    const float infinity = uintBitsToFloat(0x7f800000u);
     return seeps ? leavingRay(s, s.position, -direction, infinity) : leavingRay(s, s.shadow_start, direction, infinity);
 }
 

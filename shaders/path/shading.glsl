@@ -111,6 +111,14 @@ void tangents(vec3 n, out vec3 t, out vec3 b) {
     b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
+/// A direction in front of a surface, its density the cosine over pi; `random` in [0, 1).
+vec3 cosineDirection(vec3 normal, vec2 random) {
+    vec3 t, b;
+    tangents(normal, t, b);
+    const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
+    return t * (r * cos(phi)) + b * (r * sin(phi)) + normal * sqrt(max(0.0, 1.0 - random.x));
+}
+
 /// pcg3d (Jarzynski, Olano: Hash Functions for GPU Rendering, JCGT 2020).
 uvec3 hash3(uvec3 v) {
     v = v * 1664525u + 1013904223u;

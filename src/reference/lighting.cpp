@@ -149,11 +149,8 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     back *= m.occlusion * (1 - seen.coat) * context_.surroundings.irradiance(-s.normal);
     if (!context_.settings.ambient) return front + back;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
-    const glm::dvec2 random = random_pair(path.seed, sample_, Purpose::sky);
-    const auto [t, b] = tangents(s.normal);
-    const double r = std::sqrt(random.x), phi = 2 * pi * random.y;
-    const glm::dvec3 up = s.normal * std::sqrt(std::max(0.0, 1 - random.x));
-    const glm::dvec3 direction = above_surface(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up, s.geometric);
+    const glm::dvec3 sampled = cosine_direction(s.normal, random_pair(path.seed, sample_, Purpose::sky));
+    const glm::dvec3 direction = above_surface(sampled, s.geometric);
     if (largest(front) > 0) {
         rays_.ambient++;
         front *= visibility(s.start(s.shadow_start, direction), direction, infinity, triangle, path.media);

@@ -65,6 +65,13 @@ Tangents tangents(const glm::dvec3& n) {
     return {{1 + s * n.x * n.x * a, s * c, -s * n.x}, {c, s + n.y * n.y * a, -n.y}};
 }
 
+glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& random) {
+    const auto [t, b] = tangents(normal);
+    const double r = std::sqrt(random.x), phi = 2 * pi * random.y;
+    const glm::dvec3 up = normal * std::sqrt(std::max(0.0, 1 - random.x));
+    return t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up;
+}
+
 Lobe::Lobe(const glm::dvec3& normal, double alpha) : n(normal), alpha(alpha) {
     const Tangents any = tangents(normal);
     t = any.t;

@@ -42,6 +42,9 @@ struct Tangents {
 /// Duff et al., JCGT 2017.
 Tangents tangents(const glm::dvec3& n);
 
+/// A direction in front of a surface, its density the cosine over pi; `random` in [0, 1).
+glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& random);
+
 /// Microfacets of GGX around a normal, wider along t than along b where the surface is brushed (Heitz, JCGT 2014).
 struct Lobe {
     glm::dvec3 t, b, n;
