@@ -166,23 +166,23 @@ void sharesOf(Facet f, Material m, Interface face, vec3 base_color, Lobe lobe, v
         reflected = mix(reflected, metalReflectance(m, face, base_color, cosine), m.metallic);
         return;
     }
-    Albedos a;
-    if (compensated || !samplesMicrofacets()) a = albedosOf(m, base_color, lobe, facing);
-    vec3 metal = a.metal;
-    if (samplesMicrofacets() || (transmits(m) && !compensated)) metal = metalReflectance(m, face, base_color, cosine);
+    const vec4 means = splitSum(lobe.mean_roughness, facing);
+    const Gains gains = gainsOf(m, base_color, means);
     if (samplesMicrofacets()) {
         const float kept = masking(lobe, f.reflected);
-        if (compensated) metal *= a.metal_gain;
+        const vec3 metal = metalReflectance(m, face, base_color, cosine) * gains.metal;
         if (transmits(m))
             keptByGlass(f, lobe, reflected, through);
         else
-            reflected *= kept * (compensated ? a.dielectric_gain : vec3(1));
+            reflected *= kept * gains.dielectric;
         reflected = mix(reflected, metal * kept, m.metallic);
-    } else if (transmits(m)) {
-        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
-        reflected = mix(reflected, metal, m.metallic) * (compensated ? 1.0 : a.kept);
+    } else if (!transmits(m)) {
+        reflected = mix(dielectricAlbedo(m, means, gains), metalAlbedo(m, base_color, means, gains), m.metallic);
+    } else if (compensated) {
+        reflected = mix(reflected, metalAlbedo(m, base_color, means, gains), m.metallic);
     } else {
-        reflected = mix(a.dielectric, metal, m.metallic);
+        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+        reflected = mix(reflected, metalReflectance(m, face, base_color, cosine), m.metallic) * means.x;
     }
 }
 

@@ -30,10 +30,9 @@ vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distan
 /// What a surface makes of light, wherever it comes from.
 struct Shade {
     Lobe lobe;
-    vec3 diffuse;   ///< share of light that comes out evenly in front, over π, less what is mirrored
+    vec3 diffuse;   ///< share of light that comes out evenly in front, over π
     vec3 seeping;   ///< the same behind
-    vec3 mirrored;  ///< share that the dielectric part mirrors of light from all around
-    vec3 dielectric_gain, metal_gain;  ///< of highlights (Albedos)
+    Gains gains;    ///< of highlights
     float below_coat, below_sheen;     ///< shares that these leave
 };
 
@@ -41,8 +40,8 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
     Shade shade;
     shade.lobe = lobeOf(s, m);
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
-    const bool mirror = isMirror(shade.lobe);
-    shade.dielectric_gain = shade.metal_gain = vec3(1);
+    shade.gains = Gains(vec3(1), vec3(1));
+    if (!isMirror(shade.lobe)) shade.gains = gainsOf(m, s.base_color, splitSum(shade.lobe.mean_roughness, cosine));
     const vec3 scattered = vec3((1.0 - m.metallic) * (1.0 - m.transmission) / PI);
     shade.diffuse = scattered * s.base_color;
     shade.seeping = vec3(0);
@@ -50,20 +49,19 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
         shade.seeping = scattered * m.seeping_share * m.seeping_color * exp(-m.absorption * m.thickness);
         shade.diffuse *= 1.0 - m.seeping_share;
     }
-    shade.mirrored = interfaceReflectance(m, interfaceInAir(m, s.front, 0u), cosine);
-    if (!mirror) {
-        const Albedos a = albedosOf(m, s.base_color, shade.lobe, cosine);
-        shade.metal_gain = a.metal_gain;
-        if (!transmits(m)) {
-            shade.mirrored = a.dielectric;
-            shade.dielectric_gain = a.dielectric_gain;  // glass's is restored microfacet by microfacet
-        } else if ((frame[0].effects & EFFECT_COMPENSATION) == 0u) {
-            shade.mirrored *= a.kept;
-        }
-    }
     shade.below_coat = 1.0 - coatShare(m, dot(view, s.coat_normal));
     shade.below_sheen = sheened ? belowSheen(m, cosine) : 1.0;
     return shade;
+}
+
+/// What the dielectric part of the surface leaves, of light from all around, for what is scattered.
+float leftByMirroring(Surface s, Material m, Shade shade, vec3 view) {
+    const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
+    if (!isMirror(shade.lobe) && !transmits(m))
+        return 1.0 - largest(dielectricAlbedo(m, splitSum(shade.lobe.mean_roughness, cosine), shade.gains));
+    vec3 mirrored = interfaceReflectance(m, interfaceInAir(m, s.front, CHANNEL_MIDDLE), cosine);
+    if (!isMirror(shade.lobe) && (frame[0].effects & EFFECT_COMPENSATION) == 0u) mirrored *= splitSum(shade.lobe.mean_roughness, cosine).x;
+    return 1.0 - largest(mirrored);
 }
 
 /// Does the surface's other side send light from there?
@@ -93,18 +91,18 @@ vec3 sheenReflectance(Surface s, Material m, vec3 view, vec3 to_light, vec3 h) {
 vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
     const float n_l = dot(s.normal, to_light);
     if (lightSeeps(s, shade, to_light))
-        return shade.seeping * -n_l * (1.0 - largest(shade.mirrored)) * shade.below_sheen * shade.below_coat;
+        return shade.seeping * -n_l * leftByMirroring(s, m, shade, view) * shade.below_sheen * shade.below_coat;
     const vec3 h = normalize(view + to_light);
     const float v_h = clamp(dot(view, h), 0.0, 1.0);
     vec3 result = vec3(0);
     if (n_l > 0.0) {
-        const Interface face = interfaceInAir(m, s.front, 0u);
+        const Interface face = interfaceInAir(m, s.front, CHANNEL_MIDDLE);
         const vec3 dielectric = interfaceReflectance(m, face, v_h);
         result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
         if (!isMirror(shade.lobe)) {
-            vec3 gain = shade.dielectric_gain;
+            vec3 gain = shade.gains.dielectric;
             if (transmits(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
-            result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.metal_gain, m.metallic) * highlight(shade.lobe, view, to_light, h);
+            result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.gains.metal, m.metallic) * highlight(shade.lobe, view, to_light, h);
         }
         if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);
     }
@@ -124,9 +122,12 @@ vec3 lampLight(uint index, Surface s, Material m, Shade shade, vec3 view, out ve
 /// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it: of what is in front, and of what is behind.
 void skyLight(Surface s, Material m, Shade shade, vec3 view, out vec3 front, out vec3 behind) {
     // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
-    const vec3 left = m.occlusion * vec3((1.0 - largest(shade.mirrored)) * shade.below_sheen * shade.below_coat);
     front = behind = vec3(0);
-    vec3 share = shade.diffuse * left;
+    vec3 share = vec3(0), left = vec3(0);
+    if (shade.diffuse != vec3(0) || shade.seeping != vec3(0)) {
+        left = m.occlusion * vec3(leftByMirroring(s, m, shade, view) * shade.below_sheen * shade.below_coat);
+        share = shade.diffuse * left;
+    }
     if (sheened) share += sheenAlbedo(m, dot(view, s.normal)) / PI * (m.occlusion * shade.below_coat);
     if (share != vec3(0)) front = share * environmentIrradiance(s.normal);
     if (seeping && shade.seeping != vec3(0)) behind = shade.seeping * left * environmentIrradiance(-s.normal);

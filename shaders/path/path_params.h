@@ -20,6 +20,7 @@ SHARED_SIZE(RayState, 24);
 #define RAY_MEDIUM 0x00ffffffu
 #define RAY_CHANNEL 0x03000000u  // 0: all colours; 1, 2, 3 times RAY_CHANNEL_UNIT: red, green, blue alone (dispersion)
 #define RAY_CHANNEL_UNIT 0x01000000u
+#define CHANNEL_MIDDLE 2u  // as a number: the one that light of lamps and of the sky has
 #define RAY_PASSED 0x04000000u  // a blended surface; that is no bounce
 #define RAY_PASSES 0x7c000000u
 #define RAY_SEES_SUN 0x80000000u

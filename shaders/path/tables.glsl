@@ -18,43 +18,40 @@ vec4 tabulated(uint table, uint side, float roughness, float cosine) {
 /// The means of the split sum; the first is that of the masking: what is left of white light.
 vec4 splitSum(float roughness, float cosine) { return tabulated(TABLE_SPLIT_SUM, SPLIT_SUM_SIDE, roughness, cosine); }
 
-/// What light that is scattered more than once adds to what is scattered once, as a factor, by reflectance at normal incidence and the
-/// mean masking (Turquin: Practical Multiple Scattering Compensation for Microfacet Models, 2019).
-vec3 compensation(vec3 f0, float kept) { return 1.0 + f0 * ((1.0 - kept) / kept); }
+/// The cosine to the microfacets that have Schlick's mean: at grazing angles the normal's own says too much of a film.
+float meanCosine(vec4 means) { return 1.0 - pow(clamp(means.z / means.x, 0.0, 1.0), 0.2); }
 
-/// Shares of white light that the dielectric part and the metal of a rough surface reflect.
-struct Albedos {
+/// What light that is scattered more than once adds to what a rough surface reflects once, as factors (Turquin: Practical Multiple
+/// Scattering Compensation for Microfacet Models, 2019).
+struct Gains {
     vec3 dielectric, metal;
-    vec3 dielectric_gain, metal_gain;  ///< of it: what is scattered more than once, as factors
-    float kept;  ///< mean masking
 };
 
-/// `cosine`: between the view and the normal.
-Albedos albedosOf(Material m, vec3 base_color, Lobe lobe, float cosine) {
-    const vec4 means = splitSum(lobe.mean_roughness, cosine);
-    Albedos a;
-    a.kept = means.x;
-    a.dielectric = (m.flags & MATERIAL_SCHLICK) != 0u ? m.f0 * means.x + (m.f90 - m.f0) * means.z
-                                                      : vec3(clamp(m.f0.x * means.x + dot(m.fresnel_fit, means.yzw), 0.0, 1.0));
-    a.metal = base_color * means.x + (1.0 - base_color) * means.z;
+/// `means`: of the split sum.
+Gains gainsOf(Material m, vec3 base_color, vec4 means) {
+    if ((frame[0].effects & EFFECT_COMPENSATION) == 0u) return Gains(vec3(1), vec3(1));
     vec3 f0 = normalReflectance(m), metal_f0 = base_color;
     if (filmed && m.iridescence > 0.0) {
-        // Where the microfacets are that have Schlick's mean: at grazing angles the normal's own says too much.
-        const float mean = 1.0 - pow(clamp(means.z / means.x, 0.0, 1.0), 0.2);
-        const vec3 film = filmReflectance(m, filmBase(m), mean), metal_film = filmReflectance(m, metalIndex(base_color), mean);
-        a.dielectric = mix(a.dielectric, film * means.x, m.iridescence);
-        a.metal = mix(a.metal, metal_film * means.x, m.iridescence);
-        f0 = mix(f0, film, m.iridescence);
-        metal_f0 = mix(metal_f0, metal_film, m.iridescence);
+        f0 = mix(f0, filmReflectance(m, filmBase(m), meanCosine(means)), m.iridescence);
+        metal_f0 = mix(metal_f0, filmReflectance(m, metalIndex(base_color), meanCosine(means)), m.iridescence);
     }
-    a.dielectric_gain = a.metal_gain = vec3(1);
-    if ((frame[0].effects & EFFECT_COMPENSATION) != 0u) {
-        a.dielectric_gain = compensation(f0, means.x);
-        a.metal_gain = compensation(metal_f0, means.x);
-        a.dielectric *= a.dielectric_gain;
-        a.metal *= a.metal_gain;
-    }
-    return a;
+    const float lost = (1.0 - means.x) / means.x;
+    return Gains(1.0 + f0 * lost, 1.0 + metal_f0 * lost);
+}
+
+/// Share of white light that the dielectric part of a rough surface reflects; `means`: of the split sum.
+vec3 dielectricAlbedo(Material m, vec4 means, Gains gains) {
+    vec3 once = (m.flags & MATERIAL_SCHLICK) != 0u ? m.f0 * means.x + (m.f90 - m.f0) * means.z
+                                                   : vec3(clamp(m.f0.x * means.x + dot(m.fresnel_fit, means.yzw), 0.0, 1.0));
+    if (filmed && m.iridescence > 0.0) once = mix(once, filmReflectance(m, filmBase(m), meanCosine(means)) * means.x, m.iridescence);
+    return once * gains.dielectric;
+}
+
+/// The same of its metal.
+vec3 metalAlbedo(Material m, vec3 base_color, vec4 means, Gains gains) {
+    vec3 once = base_color * means.x + (1.0 - base_color) * means.z;
+    if (filmed && m.iridescence > 0.0) once = mix(once, filmReflectance(m, metalIndex(base_color), meanCosine(means)) * means.x, m.iridescence);
+    return once * gains.metal;
 }
 
 /// Share of the light that a clear coat mirrors, and keeps from what is below it; `cosine`: between the view and the coat's normal.

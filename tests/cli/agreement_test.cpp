@@ -41,9 +41,10 @@ class Agreement : public ProgramTest, public testing::WithParamInterface<SceneCa
     }
 };
 
-/// A ball of glass and one of rough metal over a floor, all that textures can change textured, by images that change
-/// from texel to texel.
-std::string all_textures(const std::function<std::string(const std::string&)>& out) {
+using OutFile = std::function<std::string(const std::string&)>;
+
+/// A scene of balls, a mesh for each material, as JSON text has the rest; its images change from texel to texel.
+std::string ball_scene(const OutFile& out, nlohmann::json gltf) {
     std::mt19937 random(3);
     for (const char* name : {"color.png", "data.png", "normal.png"}) {
         std::vector<uint32_t> texels(64);
@@ -78,11 +79,34 @@ std::string all_textures(const std::function<std::string(const std::string&)>& o
             for (const uint32_t corner : {a, b, b + 1, a, b + 1, a + 1}) put(corner);
         }
     std::ofstream(out("ball.bin"), std::ios::binary) << bytes;
-    nlohmann::json gltf = nlohmann::json::parse(R"({"asset": {"version": "2.0"}, "scene": 0,
-        "images": [{"uri": "color.png"}, {"uri": "data.png"}, {"uri": "normal.png"}],
-        "textures": [{"source": 0}, {"source": 1}, {"source": 2}, {"source": 0, "sampler": 0}],
-        "samplers": [{"wrapS": 33648, "wrapT": 33071}],
-        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 2}]}},
+    gltf["buffers"] = {{{"uri", "ball.bin"}, {"byteLength", bytes.size()}}};
+    const size_t sizes[] = {12 * vertices, 8 * vertices, 8 * vertices, 4 * corners};
+    for (size_t i = 0, at = 0; i < 4; at += sizes[i++]) {
+        gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", sizes[i]}});
+        gltf["accessors"].push_back({{"bufferView", i},
+                                     {"componentType", i == 3 ? 5125 : 5126},
+                                     {"count", i == 3 ? corners : vertices},
+                                     {"type", i == 0   ? "VEC3"
+                                              : i == 3 ? "SCALAR"
+                                                       : "VEC2"}});
+    }
+    gltf["images"] = {{{"uri", "color.png"}}, {{"uri", "data.png"}}, {{"uri", "normal.png"}}};
+    gltf["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}, {{"source", 0}, {"sampler", 0}}};
+    gltf["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}}};
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}, {"intensity", 2}}};
+    for (size_t node = 0; node < gltf["nodes"].size(); node++) gltf["scenes"][0]["nodes"].push_back(node);
+    for (size_t material = 0; material < gltf["materials"].size(); material++)
+        gltf["meshes"].push_back(
+            {{"primitives",
+              {{{"attributes", {{"POSITION", 0}, {"NORMAL", 0}, {"TEXCOORD_0", 1}, {"TEXCOORD_1", 2}}},
+                {"indices", 3},
+                {"material", material}}}}});
+    std::ofstream(out("balls.gltf")) << gltf;
+    return out("balls.gltf");
+}
+
+/// A ball of glass and one of rough metal over a floor, all that textures can change textured.
+const char* const kAllTextures = R"({"asset": {"version": "2.0"}, "scene": 0,
         "extensionsUsed": ["KHR_lights_punctual"],
         "nodes": [{"mesh": 0, "translation": [-1.2, 0, 0]}, {"mesh": 1, "translation": [1.2, 0, 0]},
                   {"mesh": 2, "translation": [0, -1.1, 0], "scale": [4, 0.1, -4]},
@@ -103,33 +127,46 @@ std::string all_textures(const std::function<std::string(const std::string&)>& o
             {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.3,
                  "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
                      {"scale": [3, 2], "rotation": 0.4, "offset": [0.1, 0.2]}}}},
-             "normalTexture": {"index": 2, "scale": 0.2, "texCoord": 1}}]})");
-    gltf["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
-    gltf["buffers"] = {{{"uri", "ball.bin"}, {"byteLength", bytes.size()}}};
-    const size_t sizes[] = {12 * vertices, 8 * vertices, 8 * vertices, 4 * corners};
-    for (size_t i = 0, at = 0; i < 4; at += sizes[i++]) {
-        gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", sizes[i]}});
-        gltf["accessors"].push_back({{"bufferView", i},
-                                     {"componentType", i == 3 ? 5125 : 5126},
-                                     {"count", i == 3 ? corners : vertices},
-                                     {"type", i == 0   ? "VEC3"
-                                              : i == 3 ? "SCALAR"
-                                                       : "VEC2"}});
-    }
-    for (int material : {0, 1, 2})
-        gltf["meshes"].push_back(
-            {{"primitives",
-              {{{"attributes", {{"POSITION", 0}, {"NORMAL", 0}, {"TEXCOORD_0", 1}, {"TEXCOORD_1", 2}}},
-                {"indices", 3},
-                {"material", material}}}}});
-    std::ofstream(out("all.gltf")) << gltf;
-    return out("all.gltf");
-}
+             "normalTexture": {"index": 2, "scale": 0.2, "texCoord": 1}}]})";
+
+/// A sheen, a thin film, a stretched lobe, dispersing glass and a body that light comes through, textured.
+const char* const kRareMaterials = R"({"asset": {"version": "2.0"}, "scene": 0,
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "nodes": [{"mesh": 0, "translation": [-2.2, 1.1, 0]}, {"mesh": 1, "translation": [0, 1.1, 0]},
+                  {"mesh": 2, "translation": [2.2, 1.1, 0]}, {"mesh": 3, "translation": [-1.1, -1.1, 1]},
+                  {"mesh": 4, "translation": [1.1, -1.1, 1]},
+                  {"mesh": 5, "translation": [0, -2.3, 0], "scale": [5, 0.1, -4]},
+                  {"rotation": [-0.5, 0.3, 0, 0.81], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.3, 0.05, 0.05, 1], "metallicFactor": 0},
+             "extensions": {"KHR_materials_sheen": {"sheenColorFactor": [0.9, 0.8, 0.7], "sheenRoughnessFactor": 0.7,
+                                "sheenColorTexture": {"index": 0}, "sheenRoughnessTexture": {"index": 1}}}},
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.6, 0.6, 1], "metallicFactor": 1,
+                 "roughnessFactor": 0.15},
+             "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 0.9, "iridescenceIor": 1.5,
+                                "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 700,
+                                "iridescenceTexture": {"index": 1},
+                                "iridescenceThicknessTexture": {"index": 1, "texCoord": 1}}}},
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.7, 0.4, 1], "metallicFactor": 1,
+                 "roughnessFactor": 0.2},
+             "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.8, "anisotropyRotation": 0.5,
+                                "anisotropyTexture": {"index": 1}}}},
+            {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+             "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+                            "KHR_materials_volume": {"thicknessFactor": 1}, "KHR_materials_ior": {"ior": 1.6},
+                            "KHR_materials_dispersion": {"dispersion": 5}}},
+            {"doubleSided": true, "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5},
+             "extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.7,
+                                "diffuseTransmissionColorFactor": [0.2, 0.9, 0.4],
+                                "diffuseTransmissionTexture": {"index": 1},
+                                "diffuseTransmissionColorTexture": {"index": 0}}}},
+            {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.3}}]})";
 
 TEST_P(Agreement, WithTheReference) {
     std::vector<std::string> words = GetParam().words;
-    if (words[0] == "all textures") {
-        words[0] = all_textures([&](const std::string& name) { return out(name); });
+    if (words[0] == "all textures" || words[0] == "rare materials") {
+        const char* const text = words[0] == "all textures" ? kAllTextures : kRareMaterials;
+        words[0] = ball_scene([&](const std::string& name) { return out(name); }, nlohmann::json::parse(text));
     } else if (!words[0].starts_with("builtin:")) {
         words[0] = PEELRAY_MODELS "/" + words[0];
         if (!std::filesystem::exists(words[0])) GTEST_SKIP() << "the test models are not here: " << words[0];
@@ -173,6 +210,8 @@ INSTANTIATE_TEST_SUITE_P(
         SceneCase{"bunny", {"meshes/bunny_7k.off", "--material", "mirror", "--floor", "--sky", "--ldc", "512"}},
         SceneCase{"studio", {"gltf/WaterBottle.glb", "--floor", "--ldc", "512", "--size", "240x192"}},
         SceneCase{"blended", {"gltf/AlphaBlendModeTest.glb", "--floor", "--ldc", "512", "--size", "240x192"}},
+        SceneCase{"rare", {"rare materials", "--sky", "--ldc", "512", "--size", "240x192"}},
+        SceneCase{"rare_samples", {"rare materials", "--ldc", "512", "--spp", "4", "--size", "160x128"}},
         SceneCase{"coats", {"gltf/ClearCoatTest.glb", "--ldc", "512", "--size", "240x192"}}),
     name_of);
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
