@@ -149,12 +149,12 @@ std::vector<glm::vec2> independent_pairs(size_t count, uint32_t seed) {
 
 std::vector<LobeCase> lobe_cases() {
     std::vector<LobeCase> cases;
-    const std::array<glm::dvec3, 3> normals{{{0, 0, 1}, {0.48, 0.6, 0.64}, {0.6, 0, -0.8}}};
+    const std::array<glm::dvec3, 3> normals{{{0, 0, 1}, {0.48, 0.6, 0.64}, {-0.36, 0.48, -0.8}}};
     const auto add = [&](LobeCase lobe, double degrees, double azimuth) {
         const double angle = degrees * pi / 180, turn = azimuth * pi / 180;
         lobe.name += ", seen from " + std::to_string(int(degrees)) + "° at " + std::to_string(int(azimuth)) + "°";
         lobe.normal = normals[cases.size() % 3];
-        lobe.along = glm::normalize(glm::cross(lobe.normal, glm::dvec3(0.36, -0.48, 0.8)));
+        lobe.along = glm::normalize(glm::cross(lobe.normal, glm::dvec3(0.8, 0.36, -0.48)));
         const glm::dvec3 across = glm::cross(lobe.normal, lobe.along);
         lobe.view =
             std::cos(angle) * lobe.normal + std::sin(angle) * (std::cos(turn) * lobe.along + std::sin(turn) * across);
