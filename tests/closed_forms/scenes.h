@@ -162,6 +162,11 @@ inline Primitive disc(const glm::vec3& centre, float radius, uint32_t corners = 
     return faces({rim});
 }
 
+/// Whether a point of a horizontal plane is above, in or below a disc.
+inline bool in_disc(const glm::dvec3& p, const glm::dvec3& centre, double radius) {
+    return glm::length(glm::dvec2(p.x - centre.x, p.z - centre.z)) < radius;
+}
+
 /// The square |x|, |z| ≤ half at height y, facing up.
 inline Primitive ground(float half, float y = 0) {
     return parallelogram({-half, y, half}, {2 * half, 0, 0}, {0, 0, -2 * half});
