@@ -51,7 +51,9 @@ bool mayPass(uint triangle) { return (materials[triangle_materials[triangle]].fl
 layout(constant_id = 20) const uint material_kinds = 0u;
 const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (material_kinds & MATERIALS_SPECIFIED) != 0u,
            filtered = (material_kinds & MATERIALS_FILTERED) != 0u, blended = (material_kinds & MATERIALS_BLENDED) != 0u,
-           coated = (material_kinds & MATERIALS_COATED) != 0u;
+           coated = (material_kinds & MATERIALS_COATED) != 0u, sheened = (material_kinds & MATERIALS_SHEEN) != 0u,
+           filmed = (material_kinds & MATERIALS_FILMED) != 0u, stretched = (material_kinds & MATERIALS_STRETCHED) != 0u,
+           dispersive = (material_kinds & MATERIALS_DISPERSIVE) != 0u, seeping = (material_kinds & MATERIALS_SEEPING) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {
@@ -68,12 +70,21 @@ struct Material {
     vec3 fresnel_fit;
     float clearcoat;
     float coat_roughness;
+    vec3 sheen_color;
+    float sheen_roughness;
+    float iridescence;
+    float film_ior;
+    float film_thickness;  ///< nm
+    float spread;          ///< of the indices, see GpuMaterial
+    float seeping_share;   ///< of the diffuse light: it comes out behind,
+    vec3 seeping_color;    ///< times this
     uint flags;  ///< MATERIAL_*
 };
 /// What a point's textures give; the record's factors times this.
 struct TextureFactors {
-    vec3 emissive, specular_color;
-    float metallic, roughness, transmission, thickness, occlusion, specular, clearcoat, coat_roughness;
+    vec3 emissive, specular_color, sheen_color, seeping_color;
+    float metallic, roughness, transmission, thickness, occlusion, specular, clearcoat, coat_roughness, sheen_roughness, iridescence,
+        film, seeping_share;
 };
 
 /// With the vertices' own colours; the fourth: alpha of what is blended, else 1.
@@ -89,13 +100,13 @@ vec4 baseColor(uint material, TexturePlace place) {
 
 /// All textures of a material but the base colour's and the normal's.
 TextureFactors textureFactors(uint material, TexturePlace place) {
-    TextureFactors f = TextureFactors(vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+    TextureFactors f = TextureFactors(vec3(1), vec3(1), vec3(1), vec3(1), 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
     if (!textured || (materials[material].flags & MATERIAL_TEXTURED) == 0u) return f;
     int last = -1;  // several uses that follow each other are often one image
     vec4 value = vec4(1);
     for (int use = TEXTURE_EMISSIVE; use < TEXTURE_USES; use++) {
         const int index = materials[material].textures[use];
-        if (index < 0 || use == TEXTURE_NORMAL || use == TEXTURE_COAT_NORMAL) continue;
+        if (index < 0 || use == TEXTURE_NORMAL || use == TEXTURE_COAT_NORMAL || use == TEXTURE_ANISOTROPY) continue;
         if (index != last) value = textureAt(index, place);
         last = index;
         const float number = value[materials[material].channels[use >> 4] >> uint(2 * (use & 15)) & 3u];
@@ -109,6 +120,12 @@ TextureFactors textureFactors(uint material, TexturePlace place) {
         if (use == TEXTURE_SPECULAR_COLOR) f.specular_color = value.rgb;
         if (use == TEXTURE_CLEARCOAT) f.clearcoat = number;
         if (use == TEXTURE_COAT_ROUGHNESS) f.coat_roughness = number;
+        if (use == TEXTURE_SHEEN_COLOR) f.sheen_color = value.rgb;
+        if (use == TEXTURE_SHEEN_ROUGHNESS) f.sheen_roughness = number;
+        if (use == TEXTURE_IRIDESCENCE) f.iridescence = number;
+        if (use == TEXTURE_FILM_THICKNESS) f.film = number;
+        if (use == TEXTURE_DIFFUSE_TRANSMISSION) f.seeping_share = number;
+        if (use == TEXTURE_DIFFUSE_TRANSMISSION_COLOR) f.seeping_color = value.rgb;
     }
     return f;
 }
@@ -116,7 +133,9 @@ TextureFactors textureFactors(uint material, TexturePlace place) {
 /// The material where its textures give these factors.
 Material evaluate(uint material, TextureFactors f) {
     const GpuMaterial r = materials[material];
-    Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, coated ? r.clearcoat : 0.0, r.coat_roughness, r.flags);
+    Material m = Material(r.metallic, r.emissive, r.roughness, r.absorption, r.transmission, r.ior, r.thickness, 1.0, r.f0, r.f90, r.fresnel_fit, coated ? r.clearcoat : 0.0, r.coat_roughness,
+                          sheened ? r.sheen_color : vec3(0), r.sheen_roughness, filmed ? r.iridescence : 0.0, r.film_ior, r.film_most, r.spread,
+                          seeping ? r.diffuse_transmission : 0.0, r.diffuse_transmission_color, r.flags);
     if (!specified) m.flags &= ~MATERIAL_SCHLICK;  // none has it: the compiler may know
     if (textured) {
         m.metallic *= f.metallic;
@@ -126,6 +145,12 @@ Material evaluate(uint material, TextureFactors f) {
         m.thickness *= f.thickness;
         m.clearcoat *= f.clearcoat;
         m.coat_roughness *= f.coat_roughness;
+        m.sheen_color *= f.sheen_color;
+        m.sheen_roughness *= f.sheen_roughness;
+        m.iridescence *= f.iridescence;
+        m.film_thickness = mix(r.film_least, r.film_most, f.film);
+        m.seeping_share *= f.seeping_share;
+        m.seeping_color *= f.seeping_color;
         if ((m.flags & MATERIAL_SCHLICK) != 0u) {  // KHR_materials_specular
             m.f90 *= f.specular;
             m.f0 = min(r.fresnel_fit * f.specular_color, vec3(1)) * m.f90;
@@ -135,8 +160,11 @@ Material evaluate(uint material, TextureFactors f) {
     return m;
 }
 
-/// Index of refraction of the volume of a material.
-float materialIndex(uint material) { return materials[material].ior; }
+/// Index of refraction of the volume of a material for a ray of this RAY_CHANNEL.
+float materialIndex(uint material, uint channel) {
+    const float middle = materials[material].ior;
+    return dispersive && channel > 0u ? max(1.0, middle + (float(channel) - 2.0) * materials[material].spread) : middle;
+}
 
 /// Absorption inside the volume of a material.
 vec3 materialAbsorption(uint material) { return materials[material].absorption; }
@@ -146,6 +174,18 @@ bool bendsNormals(uint material, int use) { return textured && materials[materia
 
 /// Has the material a coat, somewhere at least?
 bool isCoated(uint material) { return coated && materials[material].clearcoat > 0.0; }
+
+/// Is the material's lobe stretched, somewhere at least?
+bool isStretched(uint material) { return stretched && materials[material].anisotropy > 0.0; }
+
+/// The direction along which the lobe is stretched, in the tangent's and the bitangent's parts, and how much.
+vec3 stretch(uint material, TexturePlace place) {
+    vec3 texel = vec3(1.0, 0.5, 1.0);
+    const int index = materials[material].textures[TEXTURE_ANISOTROPY];
+    if (index >= 0) texel = textureAt(index, place).rgb;
+    const vec2 d = texel.rg * 2.0 - 1.0, along = materials[material].anisotropy_along;
+    return vec3(along.x * d.x - along.y * d.y, along.y * d.x + along.x * d.y, materials[material].anisotropy * texel.b);
+}
 
 /// A vertex's tangent, and the side of its bitangent.
 vec4 tangentOf(uint material, uint vertex) {

@@ -53,9 +53,20 @@ struct GpuMaterial {
     float alpha_cutoff;  ///< 0: opaque
     vec3 f0;             ///< MATERIAL_SCHLICK: reflectance of the dielectric part at normal incidence; else: the fit's constant
     float f90;           ///< MATERIAL_SCHLICK: at grazing angles
-    vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of (1 - cosine) in split_sum.h
+    vec3 fresnel_fit;    ///< MATERIAL_SCHLICK: f0 before it is cut to 1 and scaled; else: its reflectance is about f0 and these times the powers of (1 - cosine) in tables.h
+    vec3 sheen_color;
+    float sheen_roughness;
+    float iridescence;       ///< share of the surface that a thin film covers
+    float film_ior;
+    float film_least;        ///< its thickness, nm, where the texture says 0
+    float film_most;         ///< and 1
+    float anisotropy;        ///< how much the lobe is stretched, [0, 1]
+    vec2 anisotropy_along;   ///< cosine and sine of the direction's rotation from the tangent
+    float spread;            ///< the index of blue less that of green, and of green less that of red
+    float diffuse_transmission;  ///< share of the diffuse light that comes out behind
+    vec3 diffuse_transmission_color;
 };
-SHARED_SIZE(GpuMaterial, 208);
+SHARED_SIZE(GpuMaterial, 272);
 #define MATERIAL_THIN 1u
 #define MATERIAL_UNLIT 2u
 #define MATERIAL_COLORED 4u       // vertices have colours
@@ -69,6 +80,11 @@ SHARED_SIZE(GpuMaterial, 208);
 #define MATERIALS_FILTERED 4u   // some have textures whose filter depends on how large they are seen
 #define MATERIALS_BLENDED 8u    // some are MATERIAL_BLENDED
 #define MATERIALS_COATED 16u    // some have a clear coat
+#define MATERIALS_SHEEN 32u     // some have a sheen
+#define MATERIALS_FILMED 64u    // some have a thin film
+#define MATERIALS_STRETCHED 128u  // some have an anisotropic lobe
+#define MATERIALS_DISPERSIVE 256u // some refract each colour differently
+#define MATERIALS_SEEPING 512u    // some let diffuse light through
 
 /// A texture as materials use it.
 struct GpuTexture {

@@ -17,7 +17,6 @@ BUFFER(writeonly, 15, PathNode, nodes)
 BUFFER(readonly, 16, uint, triangle_objects)
 BUFFER(readonly, 17, GpuObject, objects)
 BUFFER(readonly, 18, uvec2, probes)
-BUFFER(readonly, 19, vec4, split_sum)
 #define CUBE_TEXEL(index) unpackTexel(probes[index])
 #include "cubemap/cubemap.glsl"
 #include "path/frame.glsl"
@@ -27,25 +26,35 @@ GpuObject object;  // of this thread's hit
 
 /// A cube map holds the whole lobe, blurred: one lookup along the mirror direction.
 bool samplesMicrofacets() { return false; }
-vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose) { return normal; }
+vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) { return meanMicrofacet(lobe, view); }
 float tracedPart(float roughness, float metallic) { return 1.0; }
 void decide(inout Branch branch, RayState state, bool passes) {
     branch.traced = (frame[0].effects & branch.effect) != 0u && object.probe != NO_PROBE;
 }
 
 /// Light from a direction: the probe's, and where it holds nothing the environment's.
-vec3 seen(Branch branch, float roughness) {
-    if (!branch.traced) return environmentRadiance(branch.direction, branch.blur);
+vec3 seenAlong(vec3 direction, bool sees_sun, float roughness) {
     const bool mirror = roughness < MIRROR_ROUGHNESS;
-    const vec4 near = cubeRoughLookup(object.probe, object.face, object.levels, branch.direction, mirror ? 0.0 : roughness);
+    const vec4 near = cubeRoughLookup(object.probe, object.face, object.levels, direction, mirror ? 0.0 : roughness);
     vec3 far;
     if (mirror) {
-        far = skyRadiance(branch.direction, (branch.medium & RAY_SEES_SUN) != 0u);
+        far = skyRadiance(direction, sees_sun);
     } else {
-        far = environmentRadiance(branch.direction, roughness);
+        far = environmentRadiance(direction, roughness);
         far *= min(1.0, frame[0].rough_limit / max(largest(far), 1e-30));
     }
     return near.rgb + (1.0 - near.a) * far;
+}
+
+vec3 seen(Branch branch, float roughness) {
+    if (!branch.traced) return untracedLight(branch);
+    const bool sees_sun = (branch.medium & RAY_SEES_SUN) != 0u;
+    vec3 light = seenAlong(branch.direction, sees_sun, roughness);
+    if (dispersive && branch.dispersed) {
+        light.r = seenAlong(branch.red, sees_sun, roughness).r;
+        light.b = seenAlong(branch.blue, sees_sun, roughness).b;
+    }
+    return branch.weight * light;
 }
 
 void main() {
@@ -65,15 +74,14 @@ void main() {
         const Material m = materialOf(s);
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front), state, cone, reflection, refraction);
-        radiance += reflection.weight * seen(reflection, m.roughness);
+        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, reflection, refraction);
+        radiance += seen(reflection, m.roughness);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).
         const bool coat = isCoat(refraction);
         const float bent = blended && s.alpha < 1.0 ? 0.0 : m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0);
-        vec3 through = refraction.weight;
-        if (refraction.traced && !coat && (m.flags & MATERIAL_THIN) == 0u && s.front) through *= exp(-m.absorption * min(m.thickness, object.thickness));
-        radiance += through * seen(refraction, coat ? m.coat_roughness : bent);
+        if (refraction.traced && !coat && (m.flags & MATERIAL_THIN) == 0u && s.front) refraction.weight *= exp(-m.absorption * min(m.thickness, object.thickness));
+        radiance += seen(refraction, coat ? m.coat_roughness : bent);
     }
     nodes[i] = PathNode(radiance, 0u, flags);
 }

@@ -13,6 +13,7 @@ BUFFER(readonly, 12, Ray, rays)
 BUFFER(readonly, 13, Hit, hits)
 BUFFER(writeonly, 14, AovSurface, aovs)
 BUFFER(readonly, 15, uint, triangle_ids)
+BUFFER(readonly, 16, uint, triangle_objects)
 #include "path/cone.glsl"
 #include "path/frame.glsl"
 #include "view/camera.glsl"
@@ -23,18 +24,17 @@ void main() {
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
     AovSurface record;
-    record.seen = 0.0;
 #define AOV_NOTHING(name, type, channels, nothing) record.name = type(nothing);
-    SURFACE_AOVS(AOV_NOTHING)
+    SEEN_AOVS(AOV_NOTHING)
     const Hit hit = hits[i];
     if (hit.triangle != NO_TRIANGLE) {
         const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), rays[i].direction, coneAt(frame[0].cone, hit.t).x);
-        record.seen = 1.0;
         record.depth = hit.t;
         record.normal = vec4(s.normal, 0);
         record.albedo = vec4(s.base_color, 1);
         record.position = vec4(s.position, 1);
         record.triangle = float(instances[hit.instance].info.first_id + triangle_ids[hit.triangle]);
+        record.instance = float(instances[hit.instance].info.first_object + triangle_objects[hit.triangle]);
         record.material = float(s.material);
     }
     aovs[pixel.y * frame[0].width + pixel.x] = record;

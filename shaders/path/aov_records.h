@@ -16,8 +16,11 @@ namespace peelray {
 #define AOV_MEMBER(name, type, channels, nothing) type name;
 
 struct AovSurface {
-    float seen;  ///< 1: there is a surface
-    SURFACE_AOVS(AOV_MEMBER)
+    SEEN_AOVS(AOV_MEMBER)
+};
+
+struct AovMotion {
+    MOTION_AOVS(AOV_MEMBER)
 };
 
 struct AovRaySetup {
@@ -28,7 +31,8 @@ struct AovRaySetup {
 
 #ifdef __cplusplus
 #define AOV_SIZE(name, type, channels, nothing) +sizeof(type)
-static_assert(sizeof(AovSurface) == sizeof(float) SURFACE_AOVS(AOV_SIZE), "without padding, as in shaders");
+static_assert(sizeof(AovSurface) == 0 SEEN_AOVS(AOV_SIZE), "without padding, as in shaders");
+static_assert(sizeof(AovMotion) == 0 MOTION_AOVS(AOV_SIZE), "without padding, as in shaders");
 static_assert(sizeof(AovRaySetup) == 0 RAY_SETUP_AOVS(AOV_SIZE), "without padding, as in shaders");
 #undef AOV_SIZE
 }  // namespace peelray

@@ -1,7 +1,7 @@
 // The auxiliary pictures, a line each: AOV(name, type, channels, nothing). Names, files, help and the records that
 // shaders write follow from here; what is left to do is to set the value in the one place that is named.
 //   type      of a pixel's value, in shaders and on the host: float, vec4, ...
-//   channels  of the file: distance, index, vector, color, directions, cost (src/cli/picture_files.cpp)
+//   channels  of the file: distance, index, vector, color, motion, directions, cost (src/cli/picture_files.cpp)
 //   nothing   the value where the camera sees nothing
 #ifndef PEELRAY_AOV_TABLE_H
 #define PEELRAY_AOV_TABLE_H
@@ -9,14 +9,24 @@
 // What the camera sees at the pixel centres, in the world: set in aov.comp and in src/reference/path_tracer.cpp.
 //   depth     distance along the camera ray
 //   position  w: 1 where there is a surface
-//   triangle, material: numbers
-#define SURFACE_AOVS(AOV)                     \
+//   triangle, instance, material: numbers; of an instance the one of its Geometry::Object
+#define SEEN_AOVS(AOV)                        \
     AOV(depth, float, distance, AOV_INFINITY) \
     AOV(normal, vec4, vector, 0)              \
     AOV(albedo, vec4, color, 0)               \
     AOV(position, vec4, vector, 0)            \
     AOV(triangle, float, index, -1)           \
+    AOV(instance, float, index, -1)           \
     AOV(material, float, index, -1)
+
+// And how it moves, made only where it is asked for: set in aov_motion.comp and in src/reference/path_tracer.cpp.
+//   motion    from where the point is in the picture to where it was at the moment before, pixels, right and up
+#define MOTION_AOVS(AOV) AOV(motion, vec2, motion, 0)
+
+// All of what is seen.
+#define SURFACE_AOVS(AOV) \
+    SEEN_AOVS(AOV)        \
+    MOTION_AOVS(AOV)
 
 // What the paper sets up for every mirror ray (its Figure 7): set in ray_setup_store.comp and in
 // src/reference/path_tracer.cpp.

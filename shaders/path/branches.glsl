@@ -1,12 +1,13 @@
-// The two branches of a surface: what it reflects and what it lets through. Include after frame.glsl and the buffer split_sum.
+// The two branches of a surface: what it reflects and what it lets through. Include after frame.glsl.
 #ifndef PEELRAY_BRANCHES_GLSL
 #define PEELRAY_BRANCHES_GLSL
 
 #include "path/cone.glsl"
 #include "path/frame.h"
 #include "path/interface.glsl"
+#include "path/lobe.glsl"
 #include "path/path_params.h"
-#include "path/split_sum.glsl"
+#include "path/tables.glsl"
 
 struct Branch {
     vec3 weight;      ///< 0: none
@@ -16,8 +17,26 @@ struct Branch {
     float blur;       ///< roughness for the environment, if not traced
     uint cone;        ///< of the new ray
     uint effect;      ///< EFFECT_*: a clear coat's is a reflection in the refraction's place
+    bool dispersed;   ///< `direction` is green's alone
+    vec3 red, blue;   ///< theirs
 };
-const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u);
+const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u, false, vec3(0, 0, 1), vec3(0, 0, 1));
+Branch branchAlong(vec3 weight, vec3 direction, uint medium, uint cone, uint effect) {
+    return Branch(weight, direction, medium, false, 0.0, cone, effect, false, direction, direction);
+}
+
+/// What a branch that is not traced sees.
+vec3 untracedLight(Branch branch) {
+    vec3 light = environmentRadiance(branch.direction, branch.blur);
+    if (dispersive && branch.dispersed) {
+        light.r = environmentRadiance(branch.red, branch.blur).r;
+        light.b = environmentRadiance(branch.blue, branch.blur).b;
+    }
+    return branch.weight * light;
+}
+
+/// The RAY_CHANNEL of a ray, as a number from 0.
+uint channelOf(uint medium) { return dispersive ? (medium & RAY_CHANNEL) / RAY_CHANNEL_UNIT : 0u; }
 
 /// Is a surface's second branch what its clear coat mirrors?
 bool isCoat(Branch second) { return coated && second.effect == EFFECT_REFLECTION; }
@@ -28,8 +47,8 @@ uint keptCone(vec2 cone) { return filtered ? packCone(cone) : 0u; }
 // Defined by the shader that includes this.
 /// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
 bool samplesMicrofacets();
-/// The half vector of a reflection around `normal`; `purpose`: RANDOM_*.
-vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose);
+/// The half vector of a lobe's reflection; `purpose`: RANDOM_*.
+vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
 float tracedPart(float roughness, float metallic);
 /// Sets `traced` by the branch's effect; `passes`: the ray goes on through a blended surface.
@@ -42,7 +61,7 @@ void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 
     radiance *= s.alpha;
     reflection.weight *= s.alpha;
     const uint passed = (state.medium & RAY_PASSES) == RAY_PASSES ? state.medium : state.medium + RAY_PASSED;
-    refraction = Branch(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, false, 0.0, keptCone(cone), EFFECT_REFRACTION);
+    refraction = branchAlong(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, keptCone(cone), EFFECT_REFRACTION);
     decide(refraction, state, true);
 }
 
@@ -62,8 +81,7 @@ vec3 fade(inout Branch branch, float roughness, float metallic) {
 void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bool has_second, inout vec3 radiance, inout Branch reflection,
              inout Branch refraction) {
     const vec3 view = -incoming;
-    const float share = coatShare(m, dot(view, s.coat_normal)), alpha = m.coat_roughness * m.coat_roughness;
-    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS;
+    const float share = coatShare(m, dot(view, s.coat_normal));
     radiance *= 1.0 - share;
     reflection.weight *= 1.0 - share;
     refraction.weight *= 1.0 - share;
@@ -72,14 +90,13 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
         decide(reflection, state, false);
         return;
     }
-    const vec3 h = microfacet(s.coat_normal, view, alpha, state.seed, RANDOM_COAT), reflected = reflect(incoming, h);
+    const Lobe lobe = roundLobe(s.coat_normal, m.coat_roughness);
+    const vec3 h = microfacet(lobe, view, state.seed, RANDOM_COAT), reflected = reflect(incoming, h);
     float weight = share;
-    if (samplesMicrofacets() && !mirror) {
-        const float above = dot(reflected, s.coat_normal);
-        weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * (above > 0.0 ? ggxMasking(above, alpha) : 0.0);
-    }
-    Branch coat = Branch(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(mirror ? 0u : RAY_SEES_SUN), false, 0.0,
-                        keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
+    if (samplesMicrofacets() && !isMirror(lobe))
+        weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * masking(lobe, reflected);
+    Branch coat = branchAlong(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(isMirror(lobe) ? 0u : RAY_SEES_SUN),
+                              keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
     decide(coat, state, false);
     radiance += fade(coat, m.coat_roughness, 0.0);
     coat.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
@@ -87,6 +104,95 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
         reflection = coat;
     else
         refraction = coat;
+}
+
+/// What a microfacet makes of a ray.
+struct Facet {
+    vec3 normal;
+    vec3 dielectric;  ///< reflectance of what is no metal
+    vec3 reflected;
+    vec3 through;     ///< of red, green and blue the middle one
+    bool passes;      ///< or all is reflected
+};
+
+/// `incoming` as the microfacet of a thin wall lets it through: as often to this side of the straight way as the other face lets it.
+vec3 throughThin(Surface s, Lobe lobe, vec3 incoming, vec3 reflected) {
+    if (!samplesMicrofacets() || isMirror(lobe)) return incoming;
+    const vec3 mirrored = reflected - 2.0 * dot(reflected, lobe.normal) * lobe.normal;
+    return -aboveSurface(-mirrored, s.geometric);
+}
+
+Facet facetOf(Surface s, Material m, Lobe lobe, vec3 incoming, Interface face, uint seed) {
+    Facet f;
+    f.normal = microfacet(lobe, -incoming, seed, RANDOM_MICROFACET);
+    f.reflected = reflect(incoming, f.normal);
+    f.dielectric = vec3(0);
+    f.through = incoming;
+    f.passes = transmits(m);
+    // The mean over an opaque lobe comes from a table.
+    if (samplesMicrofacets() || isMirror(lobe) || f.passes) f.dielectric = interfaceReflectance(m, face, clamp(-dot(incoming, f.normal), 0.0, 1.0));
+    if (!f.passes) return f;
+    if ((m.flags & MATERIAL_THIN) != 0u) {
+        f.through = throughThin(s, lobe, incoming, f.reflected);
+        return f;
+    }
+    f.passes = refractRay(incoming, f.normal, face.eta, f.through);
+    if (!dispersive || f.passes || !face.disperses) return f;
+    // One of the others passes all the same; of the middle one nothing does.
+    f.passes = any(lessThan(f.dielectric, vec3(1)));
+    f.through = lobe.normal;
+    return f;
+}
+
+/// What the two ways of a rough microfacet of glass keep of the light: masking takes some of both. All of it with EFFECT_COMPENSATION: what
+/// one way loses goes both (for opaque surfaces Turquin's factor is the mean of this).
+void keptByGlass(Facet f, Lobe lobe, out vec3 reflected, out vec3 through) {
+    reflected = f.dielectric * masking(lobe, f.reflected);
+    through = 1.0 - f.dielectric;
+    if ((frame[0].effects & EFFECT_COMPENSATION) == 0u) return;
+    through *= f.passes ? masking(lobe, -f.through) : 0.0;
+    const vec3 kept = reflected + through;
+    reflected = mix(reflected / max(kept, vec3(1e-30)), f.dielectric, equal(kept, vec3(0)));
+    through = mix(through / max(kept, vec3(1e-30)), 1.0 - f.dielectric, equal(kept, vec3(0)));
+}
+
+/// Shares of the light that a facet, or all of the lobe that it stands for, reflects and lets through.
+void sharesOf(Facet f, Material m, Interface face, vec3 base_color, Lobe lobe, vec3 view, out vec3 reflected, out vec3 through) {
+    const float cosine = clamp(dot(view, f.normal), 0.0, 1.0), facing = clamp(dot(view, lobe.normal), 0.0, 1.0);
+    const bool compensated = (frame[0].effects & EFFECT_COMPENSATION) != 0u;
+    reflected = f.dielectric;
+    through = 1.0 - f.dielectric;
+    if (isMirror(lobe)) {
+        reflected = mix(reflected, metalReflectance(m, face, base_color, cosine), m.metallic);
+        return;
+    }
+    Albedos a;
+    if (compensated || !samplesMicrofacets()) a = albedosOf(m, base_color, lobe, facing);
+    vec3 metal = a.metal;
+    if (samplesMicrofacets() || (transmits(m) && !compensated)) metal = metalReflectance(m, face, base_color, cosine);
+    if (samplesMicrofacets()) {
+        const float kept = masking(lobe, f.reflected);
+        if (compensated) metal *= a.metal_gain;
+        if (transmits(m))
+            keptByGlass(f, lobe, reflected, through);
+        else
+            reflected *= kept * (compensated ? a.dielectric_gain : vec3(1));
+        reflected = mix(reflected, metal * kept, m.metallic);
+    } else if (transmits(m)) {
+        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
+        reflected = mix(reflected, metal, m.metallic) * (compensated ? 1.0 : a.kept);
+    } else {
+        reflected = mix(a.dielectric, metal, m.metallic);
+    }
+}
+
+/// Red, green and blue each on their own way, where the surface disperses them and the ray has them all.
+void disperse(Facet f, Interface face, vec3 incoming, uint channel, inout Branch refraction) {
+    if (!dispersive || !face.disperses || channel > 0u) return;
+    refraction.dispersed = true;
+    // Without a way to go there is no light to go it.
+    if (!refractRay(incoming, f.normal, face.etas.r, refraction.red)) refraction.red = refraction.direction;
+    if (!refractRay(incoming, f.normal, face.etas.b, refraction.blue)) refraction.blue = refraction.direction;
 }
 
 /// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
@@ -100,51 +206,28 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
         return radiance;
     }
     const vec3 view = -incoming;
-    const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-    const bool transparent = transmits(m);
-    const float alpha = m.roughness * m.roughness;
-    const vec3 h = microfacet(s.normal, view, alpha, state.seed, RANDOM_MICROFACET);
-    const float cosine = clamp(dot(view, h), 0.0, 1.0);
-    const bool mirror = m.roughness < MIRROR_ROUGHNESS, averaged = !samplesMicrofacets() && !mirror;
-    vec3 dielectric = vec3(0);
-    if (!averaged || transparent) dielectric = interfaceReflectance(m, face, cosine);
+    const Lobe lobe = lobeOf(s, m);
+    const Facet facet = facetOf(s, m, lobe, incoming, face, state.seed);
+    vec3 reflected, through;
+    sharesOf(facet, m, face, s.base_color, lobe, view, reflected, through);
+    const float below = sheened ? belowSheen(m, dot(view, s.normal)) : 1.0;
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
-    const uint sun = mirror ? state.medium & RAY_SEES_SUN : 0u;
+    const uint sun = isMirror(lobe) ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
-
-    vec3 reflected = reflect(incoming, h);
-    vec3 weight;
-    if (averaged && !transparent) {
-        const vec4 means = splitSum(m.roughness, cosine);
-        weight = mix(dielectricAlbedo(m, means), metalAlbedo(s.base_color, means), m.metallic);
-    } else {
-        weight = mix(dielectric, fresnelSchlick(s.base_color, 1.0, cosine), m.metallic);
-        // Seen from inside, no table tells the mean reflectance: then the masking's mean has to do.
-        if (averaged)
-            weight *= splitSum(m.roughness, cosine).x;
-        else if (!mirror)
-            weight *= dot(reflected, s.normal) > 0.0 ? ggxMasking(dot(reflected, s.normal), alpha) : 0.0;
-    }
-    reflection = Branch(weight, aboveSurface(reflected, s.geometric), medium | sun, false, 0.0,
-                        keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
+    reflection = branchAlong(reflected * below, aboveSurface(facet.reflected, s.geometric), medium | sun,
+                             keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
     decide(reflection, state, false);
-    if (!transparent) radiance += fade(reflection, m.roughness, m.metallic);
-    reflection.blur = samplesMicrofacets() ? 0.0 : m.roughness;
+    const bool transparent = transmits(m);
+    if (!transparent) radiance += fade(reflection, lobe.roughness, m.metallic);
+    reflection.blur = samplesMicrofacets() ? 0.0 : lobe.roughness;
 
-    if (transparent) {
-        vec3 direction;
-        bool passes = true;
-        if (thin)
-            direction = incoming;
-        else
-            passes = refractRay(incoming, h, face.eta, direction);
-        if (passes) {
-            const vec3 through = (1.0 - dielectric) * transmissionTint(m, s.base_color);
-            const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & RAY_PASSES);
-            const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
-            refraction = Branch(through, direction, inside | sun, false, 0.0, keptCone(beyond), EFFECT_REFRACTION);
-            decide(refraction, state, false);
-        }
+    if (transparent && facet.passes) {
+        const bool thin = (m.flags & MATERIAL_THIN) != 0u;
+        const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & (RAY_PASSES | RAY_CHANNEL));
+        const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
+        refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, facet.through, inside | sun, keptCone(beyond), EFFECT_REFRACTION);
+        decide(refraction, state, false);
+        disperse(facet, face, incoming, channelOf(state.medium), refraction);
     }
     if (coated && m.clearcoat > 0.0) addCoat(s, m, incoming, state, cone, transparent || s.alpha < 1.0, radiance, reflection, refraction);
     passBeside(s, incoming, state, cone, radiance, reflection, refraction);

@@ -7,6 +7,7 @@
 #include "common/material.h"
 #include "common/ray.h"
 #include "path/path_params.h"
+#include "path/tables.h"
 
 #include "common/placed.glsl"
 #include "path/shading.glsl"
@@ -26,6 +27,8 @@ struct Surface {
     bool front;        ///< the ray comes from the side that the normals point to
     uint material;
     float curvature;   ///< how much the normal turns per world unit; > 0: the ray meets a bulge. For cones: else 0
+    vec3 along;        ///< unit tangent along which a lobe is stretched
+    float stretch;     ///< how much, [0, 1]
     TextureFactors factors;
 };
 
@@ -52,10 +55,8 @@ vec3 placedNormal(mat3 cofactors, vec3 n) {
 
 vec3 directionOr(vec3 v, vec3 otherwise) { return dot(v, v) > 0.0 ? normalize(v) : otherwise; }
 
-/// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there is no texture, or no tangents. As
-/// MikkTSpace has it, nothing is made unit before the sum.
-vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
-    if (!bendsNormals(material, use)) return otherwise;
+/// The interpolated tangent and bitangent; false: there are none. As MikkTSpace has it, nothing is made unit.
+bool tangentSpace(uint material, TexturePlace place, mat3 linear, float turned, vec3 normal, out vec3 tangent, out vec3 bitangent) {
     const vec4 ta = tangentOf(material, place.corners.x), tb = tangentOf(material, place.corners.y), tc = tangentOf(material, place.corners.z);
     const vec3 weights = place.weights;
     vec3 a = ta.xyz, b = tb.xyz, c = tc.xyz;
@@ -64,11 +65,33 @@ vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float t
         b = directionOr(linear * b, vec3(0));
         c = directionOr(linear * c, vec3(0));
     }
-    const vec3 tangent = a * weights.x + b * weights.y + c * weights.z;
+    tangent = a * weights.x + b * weights.y + c * weights.z;
     const float side = (ta.w * weights.x + tb.w * weights.y + tc.w * weights.z) * turned;
-    if (side == 0.0 || dot(tangent, tangent) == 0.0) return otherwise;
-    const vec3 bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent), parts = normalParts(material, use, place);
+    bitangent = (side < 0.0 ? -1.0 : 1.0) * cross(normal, tangent);
+    return side != 0.0 && dot(tangent, tangent) > 0.0;
+}
+
+/// The normal that the material's texture makes of the interpolated one, unit; `otherwise` where there is no texture, or no tangents.
+vec3 bentNormal(uint material, int use, TexturePlace place, mat3 linear, float turned, vec3 normal, vec3 otherwise) {
+    if (!bendsNormals(material, use)) return otherwise;
+    vec3 tangent, bitangent;
+    if (!tangentSpace(material, place, linear, turned, normal, tangent, bitangent)) return otherwise;
+    const vec3 parts = normalParts(material, use, place);
     return directionOr(tangent * parts.x + bitangent * parts.y + normal * parts.z, otherwise);
+}
+
+/// How the material stretches the lobe around the surface's shading normal; `normal`: the interpolated one.
+void stretchLobe(inout Surface s, TexturePlace place, mat3 linear, float turned, vec3 normal) {
+    s.along = vec3(0);
+    s.stretch = 0.0;
+    if (!isStretched(s.material)) return;
+    vec3 tangent, bitangent;
+    if (!tangentSpace(s.material, place, linear, turned, normal, tangent, bitangent)) return;
+    const vec3 parts = stretch(s.material, place), raw = tangent * parts.x + bitangent * parts.y;
+    const vec3 flat_part = raw - s.normal * dot(raw, s.normal);
+    if (dot(flat_part, flat_part) == 0.0) return;
+    s.along = normalize(flat_part);
+    s.stretch = clamp(parts.z, 0.0, 1.0);
 }
 
 /// How much the corners' normals turn per world unit along the edges, their mean; > 0: a bulge.
@@ -129,6 +152,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
         const vec3 coat = bentNormal(s.material, TEXTURE_COAT_NORMAL, place, linear, turned, interpolated, normal);
         s.coat_normal = visibleNormal(coat * side, s.geometric, -direction);
     }
+    stretchLobe(s, place, linear, turned, interpolated);
     s.shadow_start = shadowStart(s.position, a, b, c, na * side, nb * side, nc * side, s.geometric, weights);
     const vec4 color = baseColor(s.material, place);
     s.base_color = color.rgb;
@@ -139,7 +163,7 @@ Surface surfaceAt(uint instance, uint triangle, vec2 uv, vec3 direction, float w
 
 vec3 environmentTexel(uint level_offset, uvec2 size, int x, int y) {
     const uint column = uint((x + int(size.x)) % int(size.x)), row = uint(clamp(y, 0, int(size.y) - 1));
-    return environment[level_offset + row * size.x + column].rgb;
+    return lookups[TABLES_END + level_offset + row * size.x + column].rgb;
 }
 
 vec3 environmentLevel(vec2 uv, uint level) {

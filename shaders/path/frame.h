@@ -59,6 +59,7 @@ SHARED_SIZE(Frame, 320);
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
 #define EFFECT_AMBIENT 8u
+#define EFFECT_COMPENSATION 16u  // of the energy that rough surfaces would lose
 
 #ifdef __cplusplus
 }  // namespace peelray

@@ -1,10 +1,11 @@
-// Light on a surface: lamps, sun and diffuse sky. Include after frame.glsl and the buffers of lights and split_sum.
+// Light on a surface: lamps, sun and diffuse sky. Include after frame.glsl and the buffer lights.
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
 #include "path/frame.h"
 #include "path/interface.glsl"
-#include "path/split_sum.glsl"
+#include "path/lobe.glsl"
+#include "path/tables.glsl"
 
 /// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
 vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
@@ -26,47 +27,109 @@ vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distan
     return light.color * strength;
 }
 
-/// The lobe of GGX around a normal, times the cosine; less Fresnel's share.
-float highlight(vec3 normal, float roughness, vec3 view, vec3 to_light, vec3 h) {
-    const float n_l = dot(normal, to_light);
-    if (n_l <= 0.0 || roughness < MIRROR_ROUGHNESS) return 0.0;
-    const float n_v = max(GRAZING_COSINE, dot(normal, view)), n_h = clamp(dot(normal, h), 0.0, 1.0), alpha = roughness * roughness;
-    return ggxDistribution(n_h, alpha) * ggxMasking(n_v, alpha) * ggxMasking(n_l, alpha) / (4.0 * n_v);
+/// What a surface makes of light, wherever it comes from.
+struct Shade {
+    Lobe lobe;
+    vec3 diffuse;   ///< share of light that comes out evenly in front, over π, less what is mirrored
+    vec3 seeping;   ///< the same behind
+    vec3 mirrored;  ///< share that the dielectric part mirrors of light from all around
+    vec3 dielectric_gain, metal_gain;  ///< of highlights (Albedos)
+    float below_coat, below_sheen;     ///< shares that these leave
+};
+
+Shade shadeOf(Surface s, Material m, vec3 view) {
+    Shade shade;
+    shade.lobe = lobeOf(s, m);
+    const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
+    const bool mirror = isMirror(shade.lobe);
+    shade.dielectric_gain = shade.metal_gain = vec3(1);
+    const vec3 scattered = vec3((1.0 - m.metallic) * (1.0 - m.transmission) / PI);
+    shade.diffuse = scattered * s.base_color;
+    shade.seeping = vec3(0);
+    if (seeping && m.seeping_share > 0.0) {
+        shade.seeping = scattered * m.seeping_share * m.seeping_color * exp(-m.absorption * m.thickness);
+        shade.diffuse *= 1.0 - m.seeping_share;
+    }
+    shade.mirrored = interfaceReflectance(m, interfaceInAir(m, s.front, 0u), cosine);
+    if (!mirror) {
+        const Albedos a = albedosOf(m, s.base_color, shade.lobe, cosine);
+        shade.metal_gain = a.metal_gain;
+        if (!transmits(m)) {
+            shade.mirrored = a.dielectric;
+            shade.dielectric_gain = a.dielectric_gain;  // glass's is restored microfacet by microfacet
+        } else if ((frame[0].effects & EFFECT_COMPENSATION) == 0u) {
+            shade.mirrored *= a.kept;
+        }
+    }
+    shade.below_coat = 1.0 - coatShare(m, dot(view, s.coat_normal));
+    shade.below_sheen = sheened ? belowSheen(m, cosine) : 1.0;
+    return shade;
 }
 
-/// Reflected share of light from `to_light`, times the cosine.
-vec3 reflectance(Surface s, Material m, vec3 view, vec3 to_light) {
+/// Does the surface's other side send light from there?
+bool lightSeeps(Surface s, Shade shade, vec3 to_light) { return seeping && shade.seeping != vec3(0) && dot(s.normal, to_light) < 0.0; }
+
+/// What a microfacet of rough glass reflects of what its two ways keep (keptByGlass), over what it reflects without compensation.
+vec3 glassGain(Material m, Interface face, Lobe lobe, vec3 view, vec3 to_light, vec3 h, vec3 reflectance) {
+    if ((frame[0].effects & EFFECT_COMPENSATION) == 0u || frame[0].spp <= 1u) return vec3(1);
+    vec3 through;
+    bool passes = true;
+    if ((m.flags & MATERIAL_THIN) != 0u)
+        through = to_light - 2.0 * dot(to_light, lobe.normal) * lobe.normal;
+    else
+        passes = refractRay(-view, h, face.eta, through);
+    return 1.0 / max(reflectance * masking(lobe, to_light) + (1.0 - reflectance) * (passes ? masking(lobe, -through) : 0.0), vec3(1e-6));
+}
+
+/// Of the light from `to_light` that a sheen sends to `view`, times the cosine.
+vec3 sheenReflectance(Surface s, Material m, vec3 view, vec3 to_light, vec3 h) {
+    if (!sheened || m.sheen_color == vec3(0)) return vec3(0);
+    const float rough = max(m.sheen_roughness, SHEEN_LEAST_ROUGHNESS), alpha = rough * rough;
+    const float n_l = dot(s.normal, to_light), n_v = max(GRAZING_COSINE, dot(s.normal, view));
+    return m.sheen_color * sheenDistribution(clamp(dot(s.normal, h), 0.0, 1.0), alpha) / ((1.0 + sheenLambda(n_v, alpha) + sheenLambda(n_l, alpha)) * 4.0 * n_v);
+}
+
+/// Reflected share of light from `to_light`, times the cosine; of what seeps through the share of light from behind.
+vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
+    const float n_l = dot(s.normal, to_light);
+    if (lightSeeps(s, shade, to_light))
+        return shade.seeping * -n_l * (1.0 - largest(shade.mirrored)) * shade.below_sheen * shade.below_coat;
     const vec3 h = normalize(view + to_light);
-    const float n_l = dot(s.normal, to_light), v_h = clamp(dot(view, h), 0.0, 1.0);
+    const float v_h = clamp(dot(view, h), 0.0, 1.0);
     vec3 result = vec3(0);
     if (n_l > 0.0) {
-        const vec3 dielectric = dielectricReflectance(m, v_h, leavesVolume(m, s.front));
-        result = (1.0 - m.metallic) * (1.0 - m.transmission) * (1.0 - largest(dielectric)) * s.base_color / PI * n_l;
-        if (m.roughness >= MIRROR_ROUGHNESS)
-            result += mix(dielectric, fresnelSchlick(s.base_color, 1.0, v_h), m.metallic) * highlight(s.normal, m.roughness, view, to_light, h);
+        const Interface face = interfaceInAir(m, s.front, 0u);
+        const vec3 dielectric = interfaceReflectance(m, face, v_h);
+        result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
+        if (!isMirror(shade.lobe)) {
+            vec3 gain = shade.dielectric_gain;
+            if (transmits(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
+            result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.metal_gain, m.metallic) * highlight(shade.lobe, view, to_light, h);
+        }
+        if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);
     }
     if (!coated || m.clearcoat == 0.0) return result;
-    return result * (1.0 - coatShare(m, dot(view, s.coat_normal))) +
-           m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, v_h) * highlight(s.coat_normal, m.coat_roughness, view, to_light, h);
+    return result * shade.below_coat +
+           m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, v_h) * highlight(roundLobe(s.coat_normal, m.coat_roughness), view, to_light, h);
 }
 
 /// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light. The
 /// shading normal alone says whether the surface faces the light: the triangle's would cut it off in facets.
-vec3 lampLight(uint index, Surface s, Material m, vec3 view, out vec3 direction) {
+vec3 lampLight(uint index, Surface s, Material m, Shade shade, vec3 view, out vec3 direction) {
     float distance;
     const vec3 light = lightAt(lights[index], s.position, direction, distance);
-    return light == vec3(0) ? light : light * reflectance(s, m, view, direction);
+    return light == vec3(0) ? light : light * reflectance(s, m, shade, view, direction);
 }
 
-/// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it.
-vec3 skyLight(Surface s, Material m, vec3 view) {
-    const vec3 diffuse = (1.0 - m.metallic) * (1.0 - m.transmission) * s.base_color / PI;
-    if (diffuse == vec3(0)) return vec3(0);
+/// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it: of what is in front, and of what is behind.
+void skyLight(Surface s, Material m, Shade shade, vec3 view, out vec3 front, out vec3 behind) {
     // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
-    const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
-    const vec3 mirrored = m.roughness < MIRROR_ROUGHNESS ? dielectricReflectance(m, cosine, leavesVolume(m, s.front))
-                                                         : dielectricAlbedo(m, splitSum(m.roughness, cosine));
-    return diffuse * m.occlusion * (1.0 - largest(mirrored)) * (1.0 - coatShare(m, dot(view, s.coat_normal))) * environmentIrradiance(s.normal);
+    const vec3 left = m.occlusion * vec3((1.0 - largest(shade.mirrored)) * shade.below_sheen * shade.below_coat);
+    front = behind = vec3(0);
+    vec3 share = shade.diffuse * left;
+    if (sheened) share += sheenAlbedo(m, dot(view, s.normal)) / PI * (m.occlusion * shade.below_coat);
+    if (share != vec3(0)) front = share * environmentIrradiance(s.normal);
+    if (seeping && shade.seeping != vec3(0)) behind = shade.seeping * left * environmentIrradiance(-s.normal);
 }
 
 #endif

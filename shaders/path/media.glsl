@@ -71,12 +71,17 @@ uint mediaMaterial(MediaStack stack) {
 /// Rank of a material's medium; MEDIA_NO_RANK: it fills no volume.
 uint mediaRank(uint material) { return media_ranks[1u + material]; }
 
-/// Index of refraction of a medium.
-float mediaIndex(uint material) { return material == MEDIUM_NONE ? 1.0 : materialIndex(material); }
+/// Index of refraction of a medium for a ray of this RAY_CHANNEL.
+float mediaIndex(uint material, uint channel) { return material == MEDIUM_NONE ? 1.0 : materialIndex(material, channel); }
 
-/// A wall of media as a ray meets it.
-Interface mediaInterface(MediaWall wall) {
-    return Interface(mediaIndex(wall.to) / mediaIndex(wall.from), wall.to == MEDIUM_NONE, wall.from != MEDIUM_NONE && wall.to != MEDIUM_NONE);
+/// A wall of media as a ray of this channel meets it.
+Interface mediaInterface(MediaWall wall, uint channel) {
+    vec3 etas = vec3(mediaIndex(wall.to, channel) / mediaIndex(wall.from, channel));
+    if (dispersive && channel == 0u) {
+        etas.r = mediaIndex(wall.to, 1u) / mediaIndex(wall.from, 1u);
+        etas.b = mediaIndex(wall.to, 3u) / mediaIndex(wall.from, 3u);
+    }
+    return interfaceOf(etas, wall.to == MEDIUM_NONE, wall.from != MEDIUM_NONE && wall.to != MEDIUM_NONE);
 }
 
 #endif

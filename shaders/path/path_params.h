@@ -11,13 +11,15 @@ namespace peelray {
 /// What a ray carries beside its geometry.
 struct RayState {
     vec3 weight;  ///< share of the pixel's light that comes along this ray
-    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_PASSED for each surface | RAY_SEES_SUN
+    uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_CHANNEL | RAY_PASSED for each surface | RAY_SEES_SUN
     uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
     uint cone;    ///< at the ray's start (cone.glsl)
 };
 SHARED_SIZE(RayState, 24);
-#define MEDIUM_NONE 0x03ffffffu
-#define RAY_MEDIUM 0x03ffffffu
+#define MEDIUM_NONE 0x00ffffffu
+#define RAY_MEDIUM 0x00ffffffu
+#define RAY_CHANNEL 0x03000000u  // 0: all colours; 1, 2, 3 times RAY_CHANNEL_UNIT: red, green, blue alone (dispersion)
+#define RAY_CHANNEL_UNIT 0x01000000u
 #define RAY_PASSED 0x04000000u  // a blended surface; that is no bounce
 #define RAY_PASSES 0x7c000000u
 #define RAY_SEES_SUN 0x80000000u
@@ -30,7 +32,8 @@ struct PathNode {
     uint flags;        ///< NODE_*, and how many entries are its own
 };
 SHARED_SIZE(PathNode, 20);
-#define NODE_LIGHTS 0x1fffffffu
+#define NODE_LIGHTS 0x0fffffffu
+#define NODE_DISPERSED 0x10000000u // its second child is red's, the next two green's and blue's
 #define NODE_UNLIT 0x20000000u     // its radiance is a colour that a display is to show as it is
 #define NODE_SURFACE 0x40000000u   // not the sky
 #define NODE_BRANCHES 0x80000000u  // it has children
@@ -109,6 +112,20 @@ struct RaySetupParams {
     vec3 upper;
 };
 SHARED_SIZE(RaySetupParams, 24);
+
+/// The camera at the moment before, as in Frame, and a band of the picture.
+struct MotionParams {
+    vec3 eye;
+    float near;
+    vec3 right;
+    uint orthographic;
+    vec3 up;
+    uint first_moving;  ///< from this vertex on positions change from moment to moment
+    vec3 forward;
+    uint capacity;   ///< level 0's hits
+    uint first_row;  ///< of the band, a multiple of 8
+};
+SHARED_SIZE(MotionParams, 68);
 
 #ifdef __cplusplus
 }  // namespace peelray

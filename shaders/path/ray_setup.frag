@@ -17,7 +17,7 @@ layout(location = 3) out vec4 directions_z;   // in the z-LDI (x, y)
 void main() {
     const uint at = uint(gl_FragCoord.y) * frame[0].width + uint(gl_FragCoord.x);
     reflection = box_point = directions_xy = directions_z = vec4(0);
-    if (aovs[at].seen == 0.0) return;
+    if (aovs[at].position.w == 0.0) return;
     const vec3 position = aovs[at].position.xyz;
     const vec3 incoming = frame[0].orthographic != 0u ? frame[0].forward : normalize(position - frame[0].eye);
     const vec3 d = reflect(incoming, aovs[at].normal.xyz);

@@ -30,7 +30,6 @@ BUFFER(writeonly, 23, SurfaceId, shadow_skip)
 BUFFER(writeonly, 24, vec3, shadow_light)
 BUFFER(readonly, 25, uvec2, visibility)
 BUFFER(readonly, 26, GpuDraw, draws)
-BUFFER(readonly, 27, vec4, split_sum)
 BUFFER(readonly, 28, MediaWall, media_walls)
 BUFFER(readonly, 29, uint, media_ranks)
 BUFFER(writeonly, 30, MediaStack, next_media)
@@ -53,15 +52,10 @@ shared uint group_first_light;
 
 bool samplesMicrofacets() { return frame[0].spp > 1u; }
 
-/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
-vec3 microfacet(vec3 normal, vec3 view, float alpha, uint seed, uint purpose) {
-    if (!samplesMicrofacets() || alpha < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return normal;
-    vec3 t, b;
-    tangents(normal, t, b);
-    const vec3 local = vec3(dot(view, t), dot(view, b), max(GRAZING_COSINE, dot(view, normal)));
-    const vec2 random = randomPair(seed, params.sample_index, purpose);
-    const vec3 h = sampleGgx(normalize(local), alpha, random);
-    return normalize(t * h.x + b * h.y + normal * h.z);
+/// The half vector: the mean one for mirrors and with one sample per pixel, else a sample of the visible normals.
+vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) {
+    if (!samplesMicrofacets() || isMirror(lobe)) return meanMicrofacet(lobe, view);
+    return sampleMicrofacet(lobe, view, randomPair(seed, params.sample_index, purpose));
 }
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
@@ -88,30 +82,31 @@ bool isCut(Branch branch, RayState state, bool passes) {
     return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state.medium, passes);
 }
 
+/// `path_weight`: of the pixel's light that comes along the new ray.
 void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
     if (index >= params.next_capacity) return;
     if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
-    next_states[index] = RayState(path_weight * branch.weight, branch.medium, seed, branch.cone);
+    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone);
     next_skip[index] = from;
 }
 
-/// A ray to light `index`.
-Ray lampRay(uint index, Surface s, vec3 direction) {
-    Ray ray = shadowRay(s, direction, uintBitsToFloat(0x7f800000u));
+/// A ray to light `index`; `seeps`: from the surface's other side.
+Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    Ray ray = seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
     if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
     return ray;
 }
 
-/// A ray to the sky. One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
-Ray skyRay(Surface s, uint seed) {
-    const vec2 random = randomPair(seed, params.sample_index, RANDOM_SKY);
-    vec3 t, b;
-    tangents(s.normal, t, b);
-    const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
-    const vec3 direction = aboveSurface(t * (r * cos(phi)) + b * (r * sin(phi)) + s.normal * sqrt(max(0.0, 1.0 - random.x)), s.geometric);
-    return leavingRay(s, s.shadow_start, direction, uintBitsToFloat(0x7f800000u));
+/// A ray to the sky in front of the surface or behind it. One cosine-distributed direction per sample: its mean is the sky that the
+/// surface really sees.
+Ray skyRay(Surface s, uint seed, bool seeps) {
+    const vec3 sampled = cosineDirection(s.normal, randomPair(seed, params.sample_index, RANDOM_SKY));
+    const vec3 direction = aboveSurface(sampled, s.geometric);
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    return seeps ? leavingRay(s, s.position, -direction, infinity) : leavingRay(s, s.shadow_start, direction, infinity);
 }
 
 void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light) {
@@ -123,46 +118,53 @@ void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light
 }
 
 /// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
-vec3 arrivingLight(uint index, Surface s, Material m, vec3 view, SurfaceId from, out vec3 direction) {
-    const vec3 light = lampLight(index, s, m, view, direction);
-    const bool blocked = light != vec3(0) && (frame[0].effects & EFFECT_SHADOW) != 0u && blocksItself(s, from, direction);
-    return blocked ? vec3(0) : light;
+vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, out vec3 direction) {
+    const vec3 light = lampLight(index, s, m, shade, view, direction);
+    if (light == vec3(0) || (frame[0].effects & EFFECT_SHADOW) == 0u || lightSeeps(s, shade, direction)) return light;
+    return blocksItself(s, from, direction) ? vec3(0) : light;
 }
 
 /// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
 vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
     rays = sky_rays = 0u;
     // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
-    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0) return vec3(0);
+    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0)
+        return vec3(0);
+    const Shade shade = shadeOf(s, m, view);
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, view, from, direction);
+        const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
         if (light == vec3(0)) continue;
         if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
         else
             sum += light;
     }
-    const vec3 sky = skyLight(s, m, view);
-    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + sky;
-    sky_rays = sky != vec3(0) ? 1u : 0u;
+    vec3 front, behind;
+    skyLight(s, m, shade, view, front, behind);
+    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + front + behind;
+    sky_rays = (front != vec3(0) ? 1u : 0u) + (behind != vec3(0) ? 1u : 0u);
     rays += sky_rays;
     return sum;
 }
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
-/// the hit is seen from.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack stack, SurfaceId from, uint seed) {
+/// the hit is seen from; `before`, `behind`: the media on either side.
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+    const Shade shade = shadeOf(s, m, view);
     if ((frame[0].effects & EFFECT_SHADOW) != 0u)
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
-            const vec3 light = arrivingLight(k, s, m, view, from, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction), stack, from, light * share);
+            const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
+            const bool seeps = lightSeeps(s, shade, direction);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, seeps), seeps ? behind : before, from, light * share);
         }
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
-    const vec3 sky = skyLight(s, m, view);
-    if (sky != vec3(0)) emitLight(slot, skyRay(s, seed), stack, from, sky * share);
+    vec3 front, back;
+    skyLight(s, m, shade, view, front, back);
+    if (front != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, front * share);
+    if (back != vec3(0)) emitLight(slot, skyRay(s, seed, true), behind, from, back * share);
 }
 
 /// Makes room in the queues for the rays of the workgroup.
@@ -223,7 +225,7 @@ bool startOf(uint i, out Ray ray, out RayState state, out Hit hit) {
 
 /// What surrounds the hit of ray `i` where media may overlap: returns what the surface is to the ray, and adds the media
 /// to `c`. `beside`: tint of the walls that coincide with it.
-Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
+Interface mediaAround(uint i, float t, uint channel, inout Scattering c, out vec3 beside) {
     const MediaWall wall = media_walls[i];
     c.before = wall.before;
     c.behind = wall.behind;
@@ -232,7 +234,7 @@ Interface mediaAround(uint i, float t, inout Scattering c, out vec3 beside) {
     c.lost = wall.passed * transmittance(medium, t);
     if (wall.lift > 0.0) c.surface.error = wall.lift;
     const bool is_wall = mediaRank(c.surface.material) != MEDIA_NO_RANK;
-    return is_wall ? mediaInterface(wall) : interfaceInAir(materialOf(c.surface), c.surface.front);
+    return is_wall ? mediaInterface(wall, channel) : interfaceInAir(materialOf(c.surface), c.surface.front, channel);
 }
 
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
@@ -240,10 +242,11 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     c.node.flags = NODE_SURFACE;
     const vec2 cone = coneAt(unpackCone(state.cone), hit.t);
     c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction, cone.x);
-    Interface face = interfaceInAir(materialOf(c.surface), c.surface.front);
+    const uint channel = channelOf(state.medium);
+    Interface face = interfaceInAir(materialOf(c.surface), c.surface.front, channel);
     vec3 beside = vec3(1);
     if (layered)
-        face = mediaAround(i, hit.t, c, beside);
+        face = mediaAround(i, hit.t, channel, c, beside);
     else
         c.lost = transmittance(state.medium, hit.t);
     state.weight *= c.lost;
@@ -252,8 +255,8 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
     // What is not traced sees the environment.
-    if (!c.reflection.traced) c.node.radiance += c.reflection.weight * environmentRadiance(c.reflection.direction, c.reflection.blur);
-    if (!c.refraction.traced) c.node.radiance += c.refraction.weight * environmentRadiance(c.refraction.direction, c.refraction.blur);
+    if (!c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
+    if (!c.refraction.traced) c.node.radiance += untracedLight(c.refraction);
     uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
     if ((m.flags & MATERIAL_UNLIT) != 0u)
@@ -264,10 +267,21 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
-    if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], 1u);
+    if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], dispersive && c.refraction.dispersed ? 3u : 1u);
     if (coat && c.refraction.traced) atomicAdd(group_coats, 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
     if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
+}
+
+/// The rays of red, green and blue, from `first` on.
+void emitDispersed(uint first, Scattering c, uint seed) {
+    for (uint channel = 1u; channel <= 3u; channel++) {
+        Branch one = c.refraction;
+        one.direction = channel == 1u ? one.red : (channel == 2u ? one.direction : one.blue);
+        one.medium += channel * RAY_CHANNEL_UNIT;
+        const vec3 weight = c.path_weight * one.weight * vec3(equal(uvec3(channel), uvec3(1, 2, 3)));
+        emitRay(first + channel - 1u, one, c.behind, c.surface, c.from, weight, seed);
+    }
 }
 
 /// Puts the next level's rays into the room that reserve() made.
@@ -275,11 +289,15 @@ void emitBranches(uint i, Scattering c, uint seed) {
     PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
     if (c.reflection.traced) {
         children.child0 = group_first + c.reflection_slot;
-        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 0u, params.level)).x);
+        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, hash3(uvec3(seed, 0u, params.level)).x);
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight, hash3(uvec3(seed, 1u, params.level)).x);
+        const uint next_seed = hash3(uvec3(seed, 1u, params.level)).x;
+        if (dispersive && c.refraction.dispersed)
+            emitDispersed(children.child1, c, next_seed);
+        else
+            emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight * c.refraction.weight, next_seed);
     }
     branches[i] = children;
 }
@@ -311,12 +329,13 @@ void main() {
     if (valid) {
         if (c.reflection.traced || c.refraction.traced) {
             c.node.flags |= NODE_BRANCHES;
+            if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
             emitBranches(i, c, state.seed);
         }
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.before, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -12,7 +12,7 @@ BUFFER(readonly, SCENE_FIRST_BINDING + 4, vec3, normals)
 BUFFER(readonly, SCENE_FIRST_BINDING + 5, vec2, uvs)
 BUFFER(readonly, SCENE_FIRST_BINDING + 6, vec4, colors)
 BUFFER(readonly, SCENE_FIRST_BINDING + 7, uint, triangle_materials)
-BUFFER(readonly, SCENE_FIRST_BINDING + 8, vec4, environment)
+BUFFER(readonly, SCENE_FIRST_BINDING + 8, vec4, lookups)  // tables.h, then the environment map
 #ifdef SCENE_WITH_TRIANGLES
 BUFFER(readonly, SCENE_FIRST_BINDING + 9, vec3, positions)
 BUFFER(readonly, SCENE_FIRST_BINDING + 10, uvec3, triangles)

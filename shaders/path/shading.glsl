@@ -62,9 +62,20 @@ float ggxMasking(float cosine, float alpha) {
     return 2.0 * cosine / (cosine + sqrt(a2 + (1.0 - a2) * cosine * cosine));
 }
 
+/// The same of a distribution that is as wide along x and y as `alpha` says; directions in the frame whose z is the normal.
+float ggxDistribution(vec3 h, vec2 alpha) {
+    const vec3 stretched = vec3(h.xy / alpha, h.z);
+    const float k = dot(stretched, stretched);
+    return 1.0 / (PI * alpha.x * alpha.y * k * k);
+}
+float ggxMasking(vec3 direction, vec2 alpha) {
+    const vec2 across = alpha * direction.xy;
+    return 2.0 * direction.z / (direction.z + sqrt(dot(across, across) + direction.z * direction.z));
+}
+
 /// A visible normal of the GGX distribution (Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 2018).
 /// `view` in the frame whose z is the normal; `random` in [0, 1).
-vec3 sampleGgx(vec3 view, float alpha, vec2 random) {
+vec3 sampleGgx(vec3 view, vec2 alpha, vec2 random) {
     const vec3 v = normalize(vec3(alpha * view.xy, view.z));
     const float length2 = v.x * v.x + v.y * v.y;
     const vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0) / sqrt(length2) : vec3(1, 0, 0);
@@ -75,11 +86,37 @@ vec3 sampleGgx(vec3 view, float alpha, vec2 random) {
     return normalize(vec3(alpha * n.xy, max(1e-6, n.z)));
 }
 
+vec3 sampleGgx(vec3 view, float alpha, vec2 random) { return sampleGgx(view, vec2(alpha), random); }
+
+/// Distribution of the fibres' normals of a sheen (Estevez, Kulla: Production Friendly Microfacet Sheen BRDF, 2017).
+float sheenDistribution(float n_h, float alpha) {
+    const float inverse = 1.0 / alpha;
+    return (2.0 + inverse) * pow(max(1.0 - n_h * n_h, 0.0), 0.5 * inverse) / (2.0 * PI);
+}
+
+/// Λ of its masking, by its authors' fit.
+float sheenLambda(float cosine, float alpha) {
+    const float part = (1.0 - alpha) * (1.0 - alpha);
+    const vec3 abc = mix(vec3(21.5473, 3.82987, 0.19823), vec3(25.3245, 3.32435, 0.16801), part);
+    const vec2 de = mix(vec2(-1.97760, -4.32054), vec2(-1.27393, -4.85967), part);
+    const float x = cosine < 0.5 ? cosine : 1.0 - cosine;
+    const float here = abc.x / (1.0 + abc.y * pow(x, abc.z)) + de.x * x + de.y;
+    return exp(cosine < 0.5 ? here : 2.0 * (abc.x / (1.0 + abc.y * pow(0.5, abc.z)) + de.x * 0.5 + de.y) - here);
+}
+
 /// Tangents of a unit normal (Duff et al.: Building an Orthonormal Basis, Revisited, JCGT 2017).
 void tangents(vec3 n, out vec3 t, out vec3 b) {
     const float s = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + n.z), c = n.x * n.y * a;
     t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
     b = vec3(c, s + n.y * n.y * a, -n.y);
+}
+
+/// A direction in front of a surface, its density the cosine over pi; `random` in [0, 1).
+vec3 cosineDirection(vec3 normal, vec2 random) {
+    vec3 t, b;
+    tangents(normal, t, b);
+    const float r = sqrt(random.x), phi = 2.0 * PI * random.y;
+    return t * (r * cos(phi)) + b * (r * sin(phi)) + normal * sqrt(max(0.0, 1.0 - random.x));
 }
 
 /// pcg3d (Jarzynski, Olano: Hash Functions for GPU Rendering, JCGT 2020).

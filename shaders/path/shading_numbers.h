@@ -64,6 +64,15 @@
 
 // Reflectance of a clear coat at normal incidence (KHR_materials_clearcoat).
 #define COAT_REFLECTANCE 0.04
+// Roughness of a sheen at least: its lobe's exponent is the inverse of the fourth power.
+#define SHEEN_LEAST_ROUGHNESS 0.07
+// Reflectance of what is below a thin film at most: all of it would take an infinite index of refraction.
+#define FILM_MOST_REFLECTANCE 0.9999
+// How often the light that interferes has gone to and fro in a film at most. Above a dielectric each time leaves less than
+// a third; above the best mirrors, seen at 6 degrees, 0.7, so that 0.02 is missing there.
+#define FILM_ORDERS 10
+// Of (index - 1) per unit of KHR_materials_dispersion: how far the indices of red and blue are from the middle.
+#define DISPERSION_SPREAD 0.025
 
 // What random numbers are for.
 #define RANDOM_MICROFACET 1

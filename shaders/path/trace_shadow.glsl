@@ -35,7 +35,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip, MediaStack stack) {
         const Surface s = meeting.wall ? meeting.surface : surfaceAt(hit.instance, hit.triangle, mediaWeights(ray, hit), ray.direction, 0.0);
         const Material m = materialOf(s);
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);
-        const Interface face = meeting.wall ? mediaInterface(meeting.at) : interfaceInAir(m, s.front);
+        const Interface face = meeting.wall ? mediaInterface(meeting.at, 0u) : interfaceInAir(m, s.front, 0u);
         const vec3 reflected = interfaceReflectance(m, face, clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
         share *= mix(vec3(1), (1.0 - reflected) * transmissionTint(m, s.base_color), s.alpha) * meeting.at.beside;
         const uint medium = meeting.wall ? meeting.at.from : mediaMaterial(meeting.at.before);
@@ -63,7 +63,7 @@ vec3 shadowShare(PeelrayRay ray, uvec2 skip) {
         const Material m = materialOf(s);
         if (!transmits(m) && s.alpha >= 1.0) return vec3(0);
         const bool thin = (m.flags & MATERIAL_THIN) != 0u || !transmits(m);
-        const vec3 reflected = wallReflectance(m, clamp(-dot(ray.direction, s.normal), 0.0, 1.0), leavesVolume(m, s.front));
+        const vec3 reflected = interfaceReflectance(m, interfaceInAir(m, s.front, 0u), clamp(-dot(ray.direction, s.normal), 0.0, 1.0));
         share *= mix(vec3(1), (1.0 - reflected) * transmissionTint(m, s.base_color), s.alpha);
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         if (!thin && !s.front) share *= exp(-m.absorption * (hit.t - since));

@@ -84,6 +84,13 @@ SettingList options_of(RenderArguments& a) {
                     const std::string names = print_text(set);
                     return names.empty() ? std::nullopt : std::optional(names);
                 });
+    add_setting(
+        list, a.exr_layers,
+        {.name = "exr-layers",
+         .group = group,
+         .help = "put the pictures of --aov into the .exr itself, as layers that Blender and Nuke know, and not "
+                 "into files beside it",
+         .needs = "aov"});
     add_file(list, a.stats, {.name = "stats", .group = group, .help = "also write times, rays and memory as JSON"});
     add_setting(list, a.counters,
                 {.name = "counters",

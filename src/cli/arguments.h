@@ -14,6 +14,7 @@ namespace peelray {
 struct RenderArguments : PictureArguments {
     std::filesystem::path output, stats;
     std::vector<Aov> aovs;
+    bool exr_layers = false;
     bool counters = false;
     SequenceArguments sequence;
 

@@ -27,6 +27,32 @@ std::string named(const std::string& name) {
     return name.empty() ? "(no name)" : printable(name);
 }
 
+/// What lies on the surface or changes how it reflects and lets light through, by extensions of the format.
+std::string describe_extras(const Material& m) {
+    std::string text;
+    if (m.specular != 1 || m.specular_color != glm::vec3(1))
+        text += fmt::format(", specular {:.3g} times {:.3g} {:.3g} {:.3g}", m.specular, m.specular_color.x,
+                            m.specular_color.y, m.specular_color.z);
+    if (m.clearcoat > 0) text += fmt::format(", clear coat {:.3g} of roughness {:.3g}", m.clearcoat, m.coat_roughness);
+    if (m.sheen_color != glm::vec3(0))
+        text += fmt::format(", sheen {:.3g} {:.3g} {:.3g} of roughness {:.3g}", m.sheen_color.x, m.sheen_color.y,
+                            m.sheen_color.z, m.sheen_roughness);
+    if (m.iridescence > 0) {
+        text += fmt::format(", iridescence {:.3g} by a film of index {:.3g}, ", m.iridescence, m.film_ior);
+        if (m.film_thickness_texture) text += fmt::format("{:.4g} to ", m.film_least);
+        text += fmt::format("{:.4g} nm", m.film_most);
+    }
+    if (m.anisotropy > 0) text += fmt::format(", anisotropy {:.3g}", m.anisotropy);
+    if (m.anisotropy > 0 && m.anisotropy_rotation != 0)
+        text += fmt::format(" turned by {:.3g} degrees", m.anisotropy_rotation * 57.29578f);
+    if (m.dispersion > 0) text += fmt::format(", dispersion {:.3g}", m.dispersion);
+    if (m.diffuse_transmission > 0)
+        text +=
+            fmt::format(", diffuse transmission {:.3g} of colour {:.3g} {:.3g} {:.3g}", m.diffuse_transmission,
+                        m.diffuse_transmission_color.x, m.diffuse_transmission_color.y, m.diffuse_transmission_color.z);
+    return text;
+}
+
 std::string describe(const Material& m) {
     std::string text = fmt::format("colour {:.3g} {:.3g} {:.3g}, metallic {:.3g}, roughness {:.3g}", m.base_color.x,
                                    m.base_color.y, m.base_color.z, m.metallic, m.roughness);
@@ -61,10 +87,7 @@ std::string describe(const Material& m) {
     if (m.transmission > 0)
         text += fmt::format(", transmission {:.3g}, index of refraction {:.3g}, {}", m.transmission, m.ior,
                             m.thickness > 0 ? "volume" : "thin wall");
-    if (m.specular != 1 || m.specular_color != glm::vec3(1))
-        text += fmt::format(", specular {:.3g} times {:.3g} {:.3g} {:.3g}", m.specular, m.specular_color.x,
-                            m.specular_color.y, m.specular_color.z);
-    if (m.clearcoat > 0) text += fmt::format(", clear coat {:.3g} of roughness {:.3g}", m.clearcoat, m.coat_roughness);
+    text += describe_extras(m);
     if (m.unlit) text += ", unlit";
     if (is_single_sided(m)) text += ", front only";
     return text;

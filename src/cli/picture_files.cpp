@@ -30,65 +30,117 @@ fs::path aov_path(const fs::path& output, Aov aov) {
     return fs::path(output).replace_extension(std::string(name_of(aov)) + ".exr");
 }
 
-/// Numbers as they are, and in colours.
-void write_costs(const Picture& picture, const RayCostField& field, Aov aov, const fs::path& output) {
-    std::vector<float> counts;
-    for (const RayCosts& costs : picture.aovs.costs) counts.push_back(float(costs.*field.value));
-    write_exr_channels(aov_path(output, aov), picture.width, picture.height, {field.name}, {counts});
-    const float scale = 1 / float(std::max(largest_of(picture.aovs.costs, field), 1u));
-    for (float& count : counts) count *= scale;
-    write_png(heat_map_path(output, aov), colorize({picture.width, picture.height, counts}));
+/// A channel of a file, and which component of a pixel's value it holds.
+struct Channel {
+    std::string name;
+    size_t component = 0;
+};
+
+/// Of an auxiliary picture, in a file of its own and among the layers of another.
+struct Channels {
+    std::vector<Channel> alone, layered;
+};
+
+/// By the kinds of the table.
+namespace channels {
+/// One component after the other; the layer is called as the picture is.
+Channels named(Aov aov, const std::vector<std::string>& names) {
+    Channels channels;
+    for (size_t i = 0; i < names.size(); i++) {
+        channels.alone.push_back({names[i], i});
+        channels.layered.push_back({std::string(name_of(aov)) + "." + names[i], i});
+    }
+    return channels;
+}
+/// A number, which as a layer is X, as Blender has it.
+Channels number(Aov aov, const std::string& alone) {
+    return {{{alone}}, {{std::string(name_of(aov)) + ".X"}}};
 }
 
-/// Names of the channels of a file, by the kinds of the table.
-namespace channels {
-std::vector<std::string> distance(Aov) {
-    return {"Z"};
+Channels distance(Aov aov) {
+    return named(aov, {"Z"});
 }
-std::vector<std::string> index(Aov aov) {
-    return {name_of(aov)};
+Channels index(Aov aov) {
+    return number(aov, name_of(aov));
 }
-std::vector<std::string> vector(Aov) {
-    return {"X", "Y", "Z"};
+Channels vector(Aov aov) {
+    return named(aov, {"X", "Y", "Z"});
 }
-std::vector<std::string> color(Aov) {
-    return {"R", "G", "B"};
+Channels color(Aov aov) {
+    return named(aov, {"R", "G", "B"});
 }
-std::vector<std::string> directions(Aov) {
-    return {"x.U", "x.V", "y.U", "y.V", "z.U", "z.V"};
+/// As layers what Blender's Vector Blur takes, of which Z and W are to go on as X and Y came; and what Nuke's nodes
+/// know of the frame before.
+Channels motion(Aov) {
+    return {{{"X", 0}, {"Y", 1}},
+            {{"Vector.X", 0}, {"Vector.Y", 1}, {"Vector.Z", 0}, {"Vector.W", 1}, {"backward.u", 0}, {"backward.v", 1}}};
+}
+Channels directions(Aov aov) {
+    return named(aov, {"x.U", "x.V", "y.U", "y.V", "z.U", "z.V"});
 }
 }  // namespace channels
 
-/// The first components of each pixel's value, one channel each.
-template <typename Value>
-void write_channels(const fs::path& path, const Picture& picture, const std::vector<std::string>& names,
-                    const std::vector<Value>& pixels) {
-    std::vector<std::vector<float>> values(names.size());
-    for (const Value& pixel : pixels) {
-        const auto components = std::bit_cast<std::array<float, sizeof(Value) / sizeof(float)>>(pixel);
-        for (size_t i = 0; i < names.size(); i++) values[i].push_back(components[i]);
+/// What a file holds: names of channels, and the values of each.
+struct Planes {
+    std::vector<std::string> names;
+    std::vector<std::vector<float>> values;
+
+    template <typename Value>
+    void add(const std::vector<Channel>& channels, const std::vector<Value>& pixels) {
+        for (const Channel& channel : channels) {
+            names.push_back(channel.name);
+            std::vector<float>& plane = values.emplace_back();
+            plane.reserve(pixels.size());
+            for (const Value& pixel : pixels)
+                plane.push_back(
+                    std::bit_cast<std::array<float, sizeof(Value) / sizeof(float)>>(pixel)[channel.component]);
+        }
     }
-    write_exr_channels(path, picture.width, picture.height, names, values);
+};
+
+std::vector<float> counts_of(const Picture& picture, const RayCostField& field) {
+    std::vector<float> counts;
+    for (const RayCosts& costs : picture.aovs.costs) counts.push_back(float(costs.*field.value));
+    return counts;
 }
 
-void write_aov(const Picture& picture, Aov aov, const fs::path& output) {
-    if (const RayCostField* field = cost_field(aov)) return write_costs(picture, *field, aov, output);
-#define AOV_WRITE(name, type, kind, nothing) \
-    if (aov == Aov::name) return write_channels(aov_path(output, aov), picture, channels::kind(aov), picture.aovs.name);
-    SURFACE_AOVS(AOV_WRITE)
-    RAY_SETUP_AOVS(AOV_WRITE)
-#undef AOV_WRITE
+void add_aov(Planes& planes, const Picture& picture, Aov aov, bool layered) {
+    const auto add = [&](const Channels& channels, const auto& pixels) {
+        planes.add(layered ? channels.layered : channels.alone, pixels);
+    };
+    if (const RayCostField* field = cost_field(aov))
+        return add(channels::number(aov, field->name), counts_of(picture, *field));
+#define AOV_ADD(name, type, kind, nothing) \
+    if (aov == Aov::name) return add(channels::kind(aov), picture.aovs.name);
+    SURFACE_AOVS(AOV_ADD)
+    RAY_SETUP_AOVS(AOV_ADD)
+#undef AOV_ADD
+}
+
+/// Costs in colours.
+void write_heat_map(const Picture& picture, const RayCostField& field, const fs::path& path) {
+    std::vector<float> counts = counts_of(picture, field);
+    const float scale = 1 / float(std::max(largest_of(picture.aovs.costs, field), 1u));
+    for (float& count : counts) count *= scale;
+    write_png(path, colorize({picture.width, picture.height, counts}));
 }
 
 }  // namespace
 
-void check_picture_name(const fs::path& path) {
-    format_of(path);
+void check_picture_name(const fs::path& path, bool exr_layers) {
+    if (format_of(path) != Format::exr && exr_layers)
+        fail(
+            "--exr-layers puts the auxiliary pictures into the picture itself, and '{}' has no room for them: name it "
+            ".exr, or leave --exr-layers out, which writes files beside it",
+            path.string());
 }
 
-std::vector<fs::path> aov_paths(const fs::path& output, Aov aov) {
-    std::vector<fs::path> paths = {aov_path(output, aov)};
-    if (cost_field(aov)) paths.push_back(heat_map_path(output, aov));
+std::vector<fs::path> paths_beside(const fs::path& output, const std::vector<Aov>& aovs, bool exr_layers) {
+    std::vector<fs::path> paths;
+    for (const Aov aov : aovs) {
+        if (!exr_layers) paths.push_back(aov_path(output, aov));
+        if (cost_field(aov)) paths.push_back(heat_map_path(output, aov));
+    }
     return paths;
 }
 
@@ -96,12 +148,22 @@ fs::path heat_map_path(const fs::path& output, Aov aov) {
     return fs::path(output).replace_extension(std::string(name_of(aov)) + ".png");
 }
 
-void write_picture(const Picture& picture, const std::vector<Aov>& aovs, const fs::path& path) {
-    for (const Aov aov : aovs) write_aov(picture, aov, path);
+void write_picture(const Picture& picture, const std::vector<Aov>& aovs, bool exr_layers, const fs::path& path) {
+    const uint32_t width = picture.width, height = picture.height;
+    Planes planes;
+    for (const Aov aov : aovs) {
+        if (const RayCostField* field = cost_field(aov)) write_heat_map(picture, *field, heat_map_path(path, aov));
+        add_aov(planes, picture, aov, exr_layers);
+        if (exr_layers) continue;
+        write_exr_channels(aov_path(path, aov), width, height, planes.names, planes.values);
+        planes = {};
+    }
     if (format_of(path) == Format::png)
-        write_png(path, Image8{picture.width, picture.height, picture.encoded});
+        write_png(path, Image8{width, height, picture.encoded});
+    else if (exr_layers)
+        write_exr_layers(path, {width, height, picture.radiance}, planes.names, planes.values);
     else
-        write_hdr(path, Image{picture.width, picture.height, picture.radiance});
+        write_hdr(path, Image{width, height, picture.radiance});
 }
 
 }  // namespace peelray

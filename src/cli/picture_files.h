@@ -9,14 +9,18 @@
 
 namespace peelray {
 
-/// Throws Error unless the name says .png, .exr or .hdr.
-void check_picture_name(const std::filesystem::path& path);
+/// Throws Error unless the name says .png, .exr or .hdr; where auxiliary pictures are to be layers of it, .exr.
+void check_picture_name(const std::filesystem::path& path, bool exr_layers);
 
-/// NAME.KIND.exr beside NAME.png; of what rays cost NAME.KIND.png as well, its heat map.
-std::vector<std::filesystem::path> aov_paths(const std::filesystem::path& output, Aov aov);
+/// What is written beside the picture NAME.png: NAME.KIND.exr, unless those are layers of the picture; of what rays
+/// cost in any case NAME.KIND.png, a heat map.
+std::vector<std::filesystem::path> paths_beside(const std::filesystem::path& output, const std::vector<Aov>& aovs,
+                                                bool exr_layers);
 std::filesystem::path heat_map_path(const std::filesystem::path& output, Aov aov);
 
-/// The picture and, beforehand, the auxiliary ones: where a picture is, all of it is.
-void write_picture(const Picture& picture, const std::vector<Aov>& aovs, const std::filesystem::path& path);
+/// The picture and, beforehand, what is beside it: where a picture is, all of it is. `exr_layers`: the auxiliary
+/// pictures become layers of the picture, an EXR.
+void write_picture(const Picture& picture, const std::vector<Aov>& aovs, bool exr_layers,
+                   const std::filesystem::path& path);
 
 }  // namespace peelray

@@ -55,20 +55,21 @@ void run_render(const RenderArguments& a) {
     check(a);
     check_single(a);
     check_counters(a);
-    check_picture_name(a.output);
+    check_picture_name(a.output, a.exr_layers);
     if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
     const RenderSettings settings = render_settings(a);
     std::vector<fs::path> outputs = {a.output};
-    for (const Aov aov : a.aovs)
-        for (const fs::path& path : aov_paths(a.output, aov)) outputs.push_back(path);
+    for (const fs::path& path : paths_beside(a.output, a.aovs, a.exr_layers)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, {a.scene, a.env});
 
     Workspace workspace(a, print_note);
     watch_interrupts();
-    const MadePicture made = render_with_bar(workspace, settings);
-    write_picture(made.picture, a.aovs, a.output);
+    Shot shot;
+    shot.fps = a.sequence.fps.value_or(kUsualFps);
+    const MadePicture made = render_with_bar(workspace, settings, shot);
+    write_picture(made.picture, a.aovs, a.exr_layers, a.output);
     for (const Aov aov : a.aovs)
         if (const RayCostField* field = cost_field(aov))
             print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, aov).string(),

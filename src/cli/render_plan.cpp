@@ -17,12 +17,17 @@ RenderSettings render_settings(const RenderArguments& a) {
     settings.counters = a.counters || wants_costs(a);
     settings.aovs = std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return !cost_field(aov); });
     settings.ray_setup = std::any_of(a.aovs.begin(), a.aovs.end(), is_ray_setup);
+    settings.motion = wants(a, Aov::motion);
     return settings;
 }
 
-MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings) {
+bool wants(const RenderArguments& a, Aov aov) {
+    return std::find(a.aovs.begin(), a.aovs.end(), aov) != a.aovs.end();
+}
+
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot) {
     Progress bar(settings.tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
-    return workspace.render(settings, {}, [&](double share) { bar.update(share); });
+    return workspace.render(settings, shot, [&](double share) { bar.update(share); });
 }
 
 void check_counters(const RenderArguments& a) {

@@ -11,7 +11,9 @@ namespace peelray {
 RenderSettings render_settings(const RenderArguments& arguments);
 /// Throws Error where what is to be counted cannot be or goes nowhere.
 void check_counters(const RenderArguments& arguments);
+/// Is the auxiliary picture among those to be written?
+bool wants(const RenderArguments& arguments, Aov aov);
 /// A picture with a progress bar of its own.
-MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings);
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot = {});
 
 }  // namespace peelray

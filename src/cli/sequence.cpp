@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cli/frame_pattern.h"
+#include "cli/render_plan.h"
 #include "cli/video.h"
 
 namespace peelray {
@@ -31,7 +32,11 @@ std::vector<uint32_t> Sequence::numbers() const {
 Shot Sequence::shot(uint32_t frame) const {
     Shot shot;
     if (runs) shot.time = frame / fps;
-    if (turntable > 0) shot.turn = double(frame) / turntable;
+    shot.fps = runs ? fps : 0;
+    if (turntable > 0) {
+        shot.turn = double(frame) / turntable;
+        shot.turn_before = (double(frame) - 1) / turntable;
+    }
     return shot;
 }
 
@@ -40,7 +45,7 @@ Sequence plan_sequence(const RenderArguments& a) {
     Sequence sequence;
     sequence.frames = choose_frames(s);
     sequence.turntable = s.turntable.value_or(0);
-    sequence.fps = s.fps.value_or(30);
+    sequence.fps = s.fps.value_or(kUsualFps);
     sequence.shard = s.shard.value_or(Shard{});
     if (!s.turntable && a.time)
         fail("--frames show many moments and --time one: leave one of them out (a --turntable can stand at --time)");
@@ -66,7 +71,8 @@ void check_single(const RenderArguments& a) {
     if (has_frame_number(a.output))
         fail("'{}' has a place for a frame's number: say which frames with --frames A:B or --turntable N",
              a.output.string());
-    const char* option = s.fps ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
+    const bool motion_at_fps = s.fps && wants(a, Aov::motion);
+    const char* option = s.fps && !motion_at_fps ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
     if (option) fail("{} is for several frames: add --frames A:B or --turntable N", option);
 }
 

@@ -6,10 +6,13 @@
 
 namespace peelray {
 
+/// Frames per second where none are chosen.
+inline constexpr double kUsualFps = 30;
+
 struct Sequence {
     FrameRange frames;
     Shard shard;
-    double fps = 30;
+    double fps = kUsualFps;
     bool runs = false;       ///< the animation does: frame k shows the moment k/fps
     uint32_t turntable = 0;  ///< frames of the camera's full circle; 0: it stays
 

@@ -154,8 +154,7 @@ void check_files(const RenderArguments& a, const FramePattern& pattern, const Se
     if (is_frame(a.stats)) fail("{} would be written twice: give each output a name of its own", a.stats.string());
     const fs::path first = pattern.file(sequence.frames.first);
     std::vector<fs::path> outputs = {first, manifest_path(a.output)};
-    for (const Aov aov : a.aovs)
-        for (const fs::path& path : aov_paths(first, aov)) outputs.push_back(path);
+    for (const fs::path& path : paths_beside(first, a.aovs, a.exr_layers)) outputs.push_back(path);
     if (!a.stats.empty()) outputs.push_back(a.stats);
     check_outputs(outputs, inputs);
 }
@@ -164,17 +163,15 @@ void check_files(const RenderArguments& a, const FramePattern& pattern, const Se
 class Finished {
   public:
     Finished(const RenderArguments& a, const FramePattern& pattern)
-        : aovs_(a.aovs), pattern_(pattern), since_(fs::last_write_time(manifest_path(a.output), error_)) {}
+        : arguments_(a), pattern_(pattern), since_(fs::last_write_time(manifest_path(a.output), error_)) {}
 
     bool has(uint32_t frame) {
         const fs::path file = pattern_.file(frame);
         const auto time = fs::last_write_time(file, error_);
         if (error_) return false;
-        const bool whole = std::all_of(aovs_.begin(), aovs_.end(), [&](Aov aov) {
-            const std::vector<fs::path> paths = aov_paths(file, aov);
-            return std::all_of(paths.begin(), paths.end(),
-                               [&](const fs::path& path) { return fs::exists(path, error_); });
-        });
+        const std::vector<fs::path> beside = paths_beside(file, arguments_.aovs, arguments_.exr_layers);
+        const bool whole =
+            std::all_of(beside.begin(), beside.end(), [&](const fs::path& path) { return fs::exists(path, error_); });
         if (whole && time >= since_) return true;
         outdated++;
         return false;
@@ -184,7 +181,7 @@ class Finished {
 
   private:
     std::error_code error_;
-    const std::vector<Aov>& aovs_;
+    const RenderArguments& arguments_;
     const FramePattern& pattern_;
     fs::file_time_type since_;
 };
@@ -205,7 +202,7 @@ std::vector<uint32_t> choose_frames(const RenderArguments& a, const FramePattern
 
 void render_pictures(const RenderArguments& a, const Sequence& sequence) {
     const FramePattern pattern(a.output);
-    check_picture_name(a.output);
+    check_picture_name(a.output, a.exr_layers);
     check_files(a, pattern, sequence, {a.scene, a.env});
     Run run(a, sequence);
     check_files(a, pattern, sequence, run.scene().scene().files);
@@ -217,7 +214,7 @@ void render_pictures(const RenderArguments& a, const Sequence& sequence) {
     const size_t left_alone = sequence.numbers().size() - frames.size();
     try {
         run.render(frames, [&](uint32_t frame, const MadePicture& made) {
-            write_picture(made.picture, a.aovs, pattern.file(frame));
+            write_picture(made.picture, a.aovs, a.exr_layers, pattern.file(frame));
         });
     } catch (const Interrupted&) {
         fail("interrupted after {} of {}: the same command with --resume goes on", run.done(),

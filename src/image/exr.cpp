@@ -216,20 +216,21 @@ Image decode(const std::filesystem::path& path, std::string_view bytes, std::str
     return crop_to_display(path, window, part.header().displayWindow(), std::move(image), has_alpha);
 }
 
-/// One channel to write: `data` is float32 or half, `stride` bytes from pixel to pixel.
+/// One channel to write: `data` is of the type, `stride` bytes from pixel to pixel.
 struct Channel {
     std::string name;
+    Imf::PixelType type;
     const void* data;
     size_t stride;
 };
 
-std::string encode(uint32_t width, uint32_t height, Imf::PixelType type, const std::vector<Channel>& channels) {
+std::string encode(uint32_t width, uint32_t height, const std::vector<Channel>& channels) {
     Imf::Header header{int(width), int(height)};
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer buffer;
     for (const Channel& channel : channels) {
-        header.channels().insert(channel.name, Imf::Channel(type));
-        buffer.insert(channel.name, Imf::Slice::Make(type, channel.data, header.dataWindow(), channel.stride,
+        header.channels().insert(channel.name, Imf::Channel(channel.type));
+        buffer.insert(channel.name, Imf::Slice::Make(channel.type, channel.data, header.dataWindow(), channel.stride,
                                                      channel.stride * width));
     }
     MemoryOut stream;
@@ -239,6 +240,45 @@ std::string encode(uint32_t width, uint32_t height, Imf::PixelType type, const s
         file.writePixels(int(height));
     }
     return stream.bytes();
+}
+
+/// R, G, B and, unless all of it is 1, A of an image, which must outlive it.
+struct PictureChannels {
+    std::vector<std::array<Imath::half, 4>> halves;
+    std::vector<Channel> channels;
+
+    PictureChannels(const Image& image, bool full) {
+        const bool opaque =
+            std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) { return p.w == 1; });
+        const char* names[] = {"R", "G", "B", "A"};
+        const size_t count = opaque ? 3 : 4;
+        if (!full) {
+            halves.reserve(image.pixels.size());
+            const auto narrow = [](float value) {  // NaN stays: a reader should see it
+                return Imath::half(value > max_half ? max_half : value < -max_half ? -max_half : value);
+            };
+            for (const glm::vec4& p : image.pixels)
+                halves.push_back({narrow(p.x), narrow(p.y), narrow(p.z), narrow(p.w)});
+        }
+        for (size_t c = 0; c < count; ++c) {
+            if (full)
+                channels.push_back({names[c], Imf::FLOAT, &image.pixels[0][int(c)], sizeof(glm::vec4)});
+            else
+                channels.push_back({names[c], Imf::HALF, &halves[0][c], sizeof halves[0]});
+        }
+    }
+    PictureChannels(const PictureChannels&) = delete;
+    PictureChannels& operator=(const PictureChannels&) = delete;
+};
+
+/// Appends channels of floats, which must outlive it.
+void append(std::vector<Channel>& all, const std::vector<std::string>& names,
+            const std::vector<std::vector<float>>& channels, [[maybe_unused]] size_t pixels) {
+    assert(names.size() == channels.size());
+    for (size_t i = 0; i < names.size(); ++i) {
+        assert(channels[i].size() == pixels);
+        all.push_back({names[i], Imf::FLOAT, channels[i].data(), sizeof(float)});
+    }
 }
 
 /// Calls `work` and turns OpenEXR's exceptions into ours, on one line.
@@ -264,39 +304,25 @@ Image decode_exr(const std::filesystem::path& path, std::string_view bytes, std:
 }
 
 std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full) {
-    const bool opaque =
-        std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) { return p.w == 1; });
-    const char* names[] = {"R", "G", "B", "A"};
-    const size_t count = opaque ? 3 : 4;
-    std::vector<Channel> channels;
-    std::vector<std::array<Imath::half, 4>> halves;
-    if (!full) {
-        halves.reserve(image.pixels.size());
-        const auto narrow = [](float value) {  // NaN stays: a reader should see it
-            return Imath::half(value > max_half ? max_half : value < -max_half ? -max_half : value);
-        };
-        for (const glm::vec4& p : image.pixels) halves.push_back({narrow(p.x), narrow(p.y), narrow(p.z), narrow(p.w)});
-    }
-    for (size_t c = 0; c < count; ++c) {
-        if (full)
-            channels.push_back({names[c], &image.pixels[0][int(c)], sizeof(glm::vec4)});
-        else
-            channels.push_back({names[c], &halves[0][c], sizeof halves[0]});
-    }
-    return guarded("write", path,
-                   [&] { return encode(image.width, image.height, full ? Imf::FLOAT : Imf::HALF, channels); });
+    const PictureChannels picture(image, full);
+    return guarded("write", path, [&] { return encode(image.width, image.height, picture.channels); });
 }
 
 void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
                         const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels) {
     check_size("write", path, width, height);
-    assert(!names.empty() && names.size() == channels.size());
+    assert(!names.empty());
     std::vector<Channel> described;
-    for (size_t i = 0; i < names.size(); ++i) {
-        assert(channels[i].size() == size_t(width) * height);
-        described.push_back({names[i], channels[i].data(), sizeof(float)});
-    }
-    store_file(path, guarded("write", path, [&] { return encode(width, height, Imf::FLOAT, described); }));
+    append(described, names, channels, size_t(width) * height);
+    store_file(path, guarded("write", path, [&] { return encode(width, height, described); }));
+}
+
+void write_exr_layers(const std::filesystem::path& path, const Image& image, const std::vector<std::string>& names,
+                      const std::vector<std::vector<float>>& channels) {
+    check_size("write", path, image.width, image.height);
+    PictureChannels picture(image, false);
+    append(picture.channels, names, channels, image.pixels.size());
+    store_file(path, guarded("write", path, [&] { return encode(image.width, image.height, picture.channels); }));
 }
 
 }  // namespace peelray

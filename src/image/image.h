@@ -48,6 +48,11 @@ void write_hdr(const std::filesystem::path& path, const Image& image, bool full 
 void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
                         const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels);
 
+/// Writes a picture to EXR as write_hdr() does and, into the same file, more channels as write_exr_channels() does:
+/// what comes before the last dot of their names is their layer ("normal.X").
+void write_exr_layers(const std::filesystem::path& path, const Image& image, const std::vector<std::string>& names,
+                      const std::vector<std::vector<float>>& channels);
+
 /// Writes an 8-bit PNG. `alpha` false drops the alpha channel.
 void write_png(const std::filesystem::path& path, const Image8& image, bool alpha = false);
 

@@ -19,12 +19,29 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array supported_extensions = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength", "KHR_materials_ior",
-     "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume", "KHR_node_visibility",
-     "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"});
+constexpr std::array supported_extensions = std::to_array<std::string_view>({"EXT_mesh_gpu_instancing",
+                                                                             "EXT_meshopt_compression",
+                                                                             "EXT_texture_webp",
+                                                                             "KHR_draco_mesh_compression",
+                                                                             "KHR_lights_punctual",
+                                                                             "KHR_materials_anisotropy",
+                                                                             "KHR_materials_clearcoat",
+                                                                             "KHR_materials_diffuse_transmission",
+                                                                             "KHR_materials_dispersion",
+                                                                             "KHR_materials_emissive_strength",
+                                                                             "KHR_materials_ior",
+                                                                             "KHR_materials_iridescence",
+                                                                             "KHR_materials_pbrSpecularGlossiness",
+                                                                             "KHR_materials_sheen",
+                                                                             "KHR_materials_specular",
+                                                                             "KHR_materials_transmission",
+                                                                             "KHR_materials_unlit",
+                                                                             "KHR_materials_variants",
+                                                                             "KHR_materials_volume",
+                                                                             "KHR_node_visibility",
+                                                                             "KHR_mesh_quantization",
+                                                                             "KHR_meshopt_compression",
+                                                                             "KHR_texture_transform"});
 
 /// Half of pi, and what rounding may add to it.
 constexpr double kRightAngle = 1.5707964;
@@ -173,6 +190,42 @@ Members accessor_members(size_t view_without_bytes) {
                     required(object("values", {required(index("bufferView", "bufferViews")), whole("byteOffset")}))})};
 }
 
+Members material_extensions() {
+    return {
+        object("KHR_materials_anisotropy", {within(0, 1, number("anisotropyStrength")), number("anisotropyRotation"),
+                                            texture("anisotropyTexture")}),
+        object("KHR_materials_clearcoat",
+               {within(0, 1, number("clearcoatFactor")), texture("clearcoatTexture"),
+                within(0, 1, number("clearcoatRoughnessFactor")), texture("clearcoatRoughnessTexture"),
+                texture("clearcoatNormalTexture", {number("scale")})}),
+        object(
+            "KHR_materials_diffuse_transmission",
+            {within(0, 1, number("diffuseTransmissionFactor")), texture("diffuseTransmissionTexture"),
+             within(0, 1, numbers("diffuseTransmissionColorFactor", 3)), texture("diffuseTransmissionColorTexture")}),
+        object("KHR_materials_dispersion", {within(0, INFINITY, number("dispersion"))}),
+        object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
+        object("KHR_materials_ior", {within(0, INFINITY, number("ior"))}),
+        object(
+            "KHR_materials_iridescence",
+            {within(0, 1, number("iridescenceFactor")), texture("iridescenceTexture"),
+             within(1, INFINITY, number("iridescenceIor")), within(0, INFINITY, number("iridescenceThicknessMinimum")),
+             within(0, INFINITY, number("iridescenceThicknessMaximum")), texture("iridescenceThicknessTexture")}),
+        object("KHR_materials_pbrSpecularGlossiness",
+               {within(0, 1, numbers("diffuseFactor", 4)), texture("diffuseTexture"),
+                within(0, 1, numbers("specularFactor", 3)), within(0, 1, number("glossinessFactor")),
+                texture("specularGlossinessTexture")}),
+        object("KHR_materials_sheen", {within(0, 1, numbers("sheenColorFactor", 3)), texture("sheenColorTexture"),
+                                       within(0, 1, number("sheenRoughnessFactor")), texture("sheenRoughnessTexture")}),
+        object("KHR_materials_specular",
+               {within(0, 1, number("specularFactor")), texture("specularTexture"),
+                within(0, INFINITY, numbers("specularColorFactor", 3)), texture("specularColorTexture")}),
+        object("KHR_materials_transmission",
+               {within(0, 1, number("transmissionFactor")), texture("transmissionTexture")}),
+        object("KHR_materials_unlit", {}),
+        object("KHR_materials_volume", {within(0, INFINITY, number("thicknessFactor")), texture("thicknessTexture"),
+                                        within(0, 1, numbers("attenuationColor", 3)), number("attenuationDistance")})};
+}
+
 Members material_members() {
     return {
         text("name"),
@@ -186,26 +239,7 @@ Members material_members() {
         object("pbrMetallicRoughness", {within(0, 1, numbers("baseColorFactor", 4)),
                                         within(0, 1, number("metallicFactor")), within(0, 1, number("roughnessFactor")),
                                         texture("baseColorTexture"), texture("metallicRoughnessTexture")}),
-        object("extensions",
-               {object("KHR_materials_clearcoat",
-                       {within(0, 1, number("clearcoatFactor")), texture("clearcoatTexture"),
-                        within(0, 1, number("clearcoatRoughnessFactor")), texture("clearcoatRoughnessTexture"),
-                        texture("clearcoatNormalTexture", {number("scale")})}),
-                object("KHR_materials_emissive_strength", {within(0, INFINITY, number("emissiveStrength"))}),
-                object("KHR_materials_ior", {within(0, INFINITY, number("ior"))}),
-                object("KHR_materials_pbrSpecularGlossiness",
-                       {within(0, 1, numbers("diffuseFactor", 4)), texture("diffuseTexture"),
-                        within(0, 1, numbers("specularFactor", 3)), within(0, 1, number("glossinessFactor")),
-                        texture("specularGlossinessTexture")}),
-                object("KHR_materials_specular",
-                       {within(0, 1, number("specularFactor")), texture("specularTexture"),
-                        within(0, INFINITY, numbers("specularColorFactor", 3)), texture("specularColorTexture")}),
-                object("KHR_materials_transmission",
-                       {within(0, 1, number("transmissionFactor")), texture("transmissionTexture")}),
-                object("KHR_materials_unlit", {}),
-                object("KHR_materials_volume",
-                       {within(0, INFINITY, number("thicknessFactor")), texture("thicknessTexture"),
-                        within(0, 1, numbers("attenuationColor", 3)), number("attenuationDistance")})})};
+        object("extensions", material_extensions())};
 }
 
 /// What the loader reads of a file. What is not listed never reaches tinygltf.

@@ -6,6 +6,7 @@
 #include "loaders/images.h"
 #include "scene/media.h"
 #include "scene/sampling.h"
+#include "scene/tangents.h"
 
 namespace peelray {
 
@@ -107,11 +108,16 @@ class MaterialReader {
         read_transmission();
         if (!glossy.IsObject()) read_reflectance();
         read_clearcoat();
+        read_sheen();
+        read_iridescence();
+        read_dispersion();
+        read_diffuse_transmission();
         material_.unlit = from_.extensions.count("KHR_materials_unlit") > 0;
         material_.normal_texture = use(TextureInfo::of(from_.normalTexture));
         material_.normal_scale = static_cast<float>(from_.normalTexture.scale);
         material_.occlusion_texture = use(TextureInfo::of(from_.occlusionTexture));
         material_.occlusion_strength = unit(from_.occlusionTexture.strength);
+        read_anisotropy();
         read_alpha_mode();
         loader_.scene.materials.push_back(std::move(material_));
         loader_.uv_sets.push_back(std::move(uv_sets_));
@@ -208,6 +214,63 @@ class MaterialReader {
         material_.coat_normal_texture = use(TextureInfo::of(coat, "clearcoatNormalTexture"));
         if (material_.coat_normal_texture)
             material_.coat_normal_scale = static_cast<float>(number(coat.Get("clearcoatNormalTexture"), "scale", 1));
+    }
+
+    void read_sheen() {
+        const tinygltf::Value& sheen = extension(from_.extensions, "KHR_materials_sheen");
+        material_.sheen_color = glm::clamp(vector(sheen, "sheenColorFactor", glm::vec3(0)), 0.f, 1.f);
+        material_.sheen_roughness = unit(number(sheen, "sheenRoughnessFactor", 0));
+        if (material_.sheen_color == glm::vec3(0)) return;
+        material_.sheen_color_texture = use(TextureInfo::of(sheen, "sheenColorTexture"));
+        material_.sheen_roughness_texture = use(TextureInfo::of(sheen, "sheenRoughnessTexture"), 3);
+    }
+
+    /// The least thickness may be above the most: then the texture runs the other way.
+    void read_iridescence() {
+        const tinygltf::Value& film = extension(from_.extensions, "KHR_materials_iridescence");
+        // Beyond these numbers it is no thin film, and rounding decides what is seen of it.
+        constexpr double most_ior = 1e6, most_thickness = 1e5;
+        const auto thickness = [&](const char* key, double missing) {
+            return static_cast<float>(std::clamp(number(film, key, missing), 0.0, most_thickness));
+        };
+        material_.iridescence = unit(number(film, "iridescenceFactor", 0));
+        material_.film_ior = static_cast<float>(std::clamp(number(film, "iridescenceIor", 1.3), 1.0, most_ior));
+        material_.film_least = thickness("iridescenceThicknessMinimum", 100);
+        material_.film_most = thickness("iridescenceThicknessMaximum", 400);
+        if (material_.iridescence == 0) return;
+        material_.iridescence_texture = use(TextureInfo::of(film, "iridescenceTexture"));
+        material_.film_thickness_texture = use(TextureInfo::of(film, "iridescenceThicknessTexture"), 1);
+    }
+
+    /// Infinite indices of refraction have none. At 40 red is no longer bent.
+    void read_dispersion() {
+        const tinygltf::Value& dispersion = extension(from_.extensions, "KHR_materials_dispersion");
+        constexpr double most = 1000;
+        if (material_.ior > 0)
+            material_.dispersion = static_cast<float>(std::clamp(number(dispersion, "dispersion", 0), 0.0, most));
+    }
+
+    void read_diffuse_transmission() {
+        const tinygltf::Value& from = extension(from_.extensions, "KHR_materials_diffuse_transmission");
+        material_.diffuse_transmission = unit(number(from, "diffuseTransmissionFactor", 0));
+        material_.diffuse_transmission_color =
+            glm::clamp(vector(from, "diffuseTransmissionColorFactor", glm::vec3(1)), 0.f, 1.f);
+        if (material_.diffuse_transmission == 0) return;
+        material_.diffuse_transmission_texture = use(TextureInfo::of(from, "diffuseTransmissionTexture"), 3);
+        material_.diffuse_transmission_color_texture = use(TextureInfo::of(from, "diffuseTransmissionColorTexture"));
+    }
+
+    /// After the textures of normals: where neither they nor its own say which coordinates tangents follow, TEXCOORD_0
+    /// do.
+    void read_anisotropy() {
+        const tinygltf::Value& anisotropy = extension(from_.extensions, "KHR_materials_anisotropy");
+        material_.anisotropy = unit(number(anisotropy, "anisotropyStrength", 0));
+        if (material_.anisotropy == 0) return;
+        constexpr double turn = 2 * 3.14159265358979323846;
+        material_.anisotropy_rotation =
+            static_cast<float>(std::remainder(number(anisotropy, "anisotropyRotation", 0), turn));
+        material_.anisotropy_texture = use(TextureInfo::of(anisotropy, "anisotropyTexture"));
+        if (!tangent_texture(material_)) material_.anisotropy_texture.uv_set = uv_set(0);
     }
 
     void read_transmission() {

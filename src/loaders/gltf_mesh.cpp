@@ -6,6 +6,7 @@
 #include "loaders/gltf.h"
 #include "loaders/gltf_draco.h"
 #include "scene/normals.h"
+#include "scene/tangents.h"
 #include "scene/thicken.h"
 #include "scene/transform.h"
 
@@ -193,6 +194,7 @@ class PrimitiveReader {
         }
         read_uvs(out);
         read_tangents(out);
+        note_anisotropy(out);
         read_colors(out);
         read_joints(out);
         read_targets(out);
@@ -211,11 +213,13 @@ class PrimitiveReader {
     /// The sets that the material's textures use, in its order; without textures the first.
     void read_uvs(Primitive& out) {
         const std::vector<uint32_t>& used = loader_.uv_sets[out.material];
+        const Material& m = loader_.scene.materials[out.material];
         if (used.empty()) out.uvs = read_uv_set(0, out);
         bool missing = false;
         for (size_t i = 0; i < used.size(); ++i) {
             std::vector<glm::vec2> set = read_uv_set(used[i], out);
-            missing |= set.empty();
+            missing |= set.empty() &&
+                       std::ranges::any_of(material_textures, [&](auto use) { return m.*use && (m.*use).uv_set == i; });
             if (i == 0)
                 out.uvs = std::move(set);
             else
@@ -243,11 +247,10 @@ class PrimitiveReader {
         return uvs;
     }
 
-    /// Where the material has a normal texture, and all are right: else they are made. They belong to the file's
-    /// normals.
+    /// Where the material needs them, and all are right: else they are made. They belong to the file's normals.
     void read_tangents(Primitive& out) {
         const Material& m = loader_.scene.materials[out.material];
-        if (!(m.normal_texture || m.coat_normal_texture) || out.normals.empty() || !has("TANGENT")) return;
+        if (!needs_tangents(m) || out.normals.empty() || !has("TANGENT")) return;
         out.tangents = vectors<glm::vec4>("TANGENT");
         check_count("TANGENT", out.tangents.size(), out);
         for (glm::vec4& tangent : out.tangents) {
@@ -261,6 +264,19 @@ class PrimitiveReader {
             }
             tangent = glm::vec4(unit, tangent.w);
         }
+    }
+
+    /// The direction of anisotropy is the tangent.
+    void note_anisotropy(const Primitive& out) const {
+        const Material& m = loader_.scene.materials[out.material];
+        if (!(m.anisotropy > 0) || m.unlit || !out.tangents.empty()) return;
+        if (tangent_coordinates(m, out).empty())
+            ++loader_
+                  .ignored["{} anisotropic primitive{|s} without tangents and texture coordinates drawn as isotropic"];
+        else if (!has("TANGENT"))
+            ++loader_.ignored
+                  ["{} anisotropic primitive{|s} without TANGENT, which programs that optimise files drop: {its|their} "
+                   "direction was computed from texture coordinates"];
     }
 
     void read_colors(Primitive& out) {

@@ -33,6 +33,7 @@ struct MtlMaterial {
     std::optional<glm::vec3> diffuse, specular, emissive, filter;  ///< Kd, Ks, Ke, Tf; linear, ≥ 0
     std::optional<float> shininess, ior, dissolve, transparency;   ///< Ns, Ni, d, Tr
     std::optional<float> roughness, metallic;                      ///< Pr, Pm
+    std::optional<float> coat, coat_roughness;                     ///< Pc, Pcr
     int illum = 2;
     std::optional<MtlTexture> diffuse_map, emissive_map, dissolve_map, roughness_map, metallic_map, normal_map;
 };

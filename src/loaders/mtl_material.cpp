@@ -167,6 +167,8 @@ void MtlConverter::read_surface(const MtlMaterial& from, Material& out) {
     // A factor beside a texture scales it; without one the texture counts as it is.
     if ((out.metallic_texture = use(from.metallic_map))) out.metallic = clamped(from.metallic.value_or(1.f));
     if ((out.roughness_texture = use(from.roughness_map))) out.roughness = clamped(from.roughness.value_or(1.f));
+    out.clearcoat = clamped(from.coat.value_or(0.f));
+    out.coat_roughness = clamped(from.coat_roughness.value_or(0.f));
     out.emissive_texture = use(from.emissive_map);
     out.emissive = from.emissive.value_or(glm::vec3(out.emissive_texture ? 1.f : 0.f));
     if ((out.normal_texture = use(from.normal_map, Depth::as_stored))) out.normal_scale = from.normal_map->strength;

@@ -56,6 +56,8 @@ class MtlReader {
         if (key == "Tr") return number(rest, m.transparency);
         if (key == "Pr") return number(rest, m.roughness);
         if (key == "Pm") return number(rest, m.metallic);
+        if (key == "Pc") return number(rest, m.coat);
+        if (key == "Pcr") return number(rest, m.coat_roughness);
         if (key == "d") return dissolve(rest, m);
         if (key == "illum") return illumination(rest, m);
         if (lower == "map_kd") return map(rest, m.diffuse_map);

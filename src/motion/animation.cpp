@@ -137,6 +137,12 @@ void complete_targets(Scene& scene) {
             if (const auto make = std::exchange(primitive.make_targets, nullptr)) primitive.targets = make(primitive);
 }
 
+double moment_before(double time, double fps) {
+    const double frame = time * fps, whole = std::round(frame);
+    const double before = std::abs(frame - whole) < 1e-6 ? (whole - 1) / fps : time - 1 / fps;
+    return std::max(before, 0.0);
+}
+
 Moment moment_of(const Scene& scene, const std::string& which, double time) {
     if (which.empty()) return at_rest(scene);
     const std::vector<const Animation*> animations = find_animations(scene, which);

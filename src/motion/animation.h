@@ -15,6 +15,10 @@ std::vector<const Animation*> find_animations(const Scene& scene, const std::str
 /// Makes the morph targets that were left for later; part of opening a scene that is to be animated.
 void complete_targets(Scene& scene);
 
+/// The moment one frame earlier, where `fps` frames are shown in a second: of frame k that of frame k - 1, to the last
+/// bit. Before its beginning all stands as at its beginning: 0.
+double moment_before(double time, double fps);
+
 /// The moment `time` (seconds, from 0) of animations: nodes, morph weights, and the cameras and lights that hang on
 /// nodes. Beyond its duration an animation starts again; what none of them moves stands as at rest. Of what is
 /// generated only the time: a Simulation places it. `which`: see find_animations(), empty: the scene at rest; of two

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/optics.h"
+#include "reference/sheen.h"
 
 namespace peelray {
 namespace {
@@ -39,9 +40,12 @@ Albedos::Means mixed(const Albedos::Means& a, const Albedos::Means& b, double pa
 
 }  // namespace
 
-Albedos::Albedos(const Scene& scene, const Surfaces& surfaces) : surfaces_(surfaces), first_table_{0} {
-    for (const Material& m : scene.materials)
-        first_table_.push_back(first_table_.back() + (m.roughness_texture ? roughnesses : 1));
+Albedos::Albedos(const Scene& scene, const Surfaces& surfaces) : surfaces_(surfaces), first_table_{0}, first_sheen_{0} {
+    for (const Material& m : scene.materials) {
+        first_table_.push_back(first_table_.back() + (m.roughness_texture || m.anisotropy > 0 ? roughnesses : 1));
+        first_sheen_.push_back(first_sheen_.back() + (m.sheen_roughness_texture ? roughnesses : 1));
+    }
+    sheens_ = std::make_unique<SheenTable[]>(first_sheen_.back());
     tables_ = std::make_unique<Table[]>(first_table_.back());
     coats_ = std::make_unique<Table[]>(roughnesses);
 }
@@ -50,6 +54,7 @@ Albedos::Means Albedos::look_up(Table& table, const Optics& constants, double ro
     std::call_once(table.made, [&] {
         Optics m = constants;
         m.roughness = roughness;
+        m.film = m.spread = 0;
         for (size_t i = 0; i <= steps; i++)
             table.entries[i] = integrate(m, std::max(GRAZING_COSINE, std::pow(double(i) / steps, 2)));
     });
@@ -73,7 +78,7 @@ Albedos::Means Albedos::at(const Surface& surface, double cosine) const {
     const Optics &constants = surfaces_.optics(surface.material), &here = surface.optics;
     Table* first = &tables_[first_table_[surface.material]];
     const bool varies = first_table_[surface.material + 1] > first_table_[surface.material] + 1;
-    Means means = varies ? between(first, constants, here.roughness, cosine)
+    Means means = varies ? between(first, constants, here.mean_roughness(), cosine)
                          : look_up(*first, constants, constants.roughness, cosine);
     // Schlick's is linear in both reflectances, which textures change.
     if (here.specified) means.dielectric = here.f0 * means.normal + here.f90 * means.grazing;
@@ -88,6 +93,32 @@ double Albedos::coat(const Surface& surface, double cosine) const {
         return m.clearcoat * optics::fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, cosine).x;
     const Means means = between(coats_.get(), Optics(), m.coat_roughness, cosine);
     return m.clearcoat * (COAT_REFLECTANCE * means.normal + means.grazing);
+}
+
+double Albedos::look_up(SheenTable& table, double alpha, double cosine) {
+    constexpr size_t steps = SheenTable::steps;
+    std::call_once(table.made, [&] {
+        for (size_t i = 0; i <= steps; i++)
+            table.entries[i] = sheen::albedo(alpha, std::max(GRAZING_COSINE, std::pow(double(i) / steps, 2)));
+    });
+    const double place = std::sqrt(std::clamp(cosine, 0.0, 1.0)) * steps;
+    const size_t lower = std::min(size_t(place), steps - 1);
+    return glm::mix(table.entries[lower], table.entries[lower + 1], place - double(lower));
+}
+
+double Albedos::sheen(const Surface& surface, double cosine) const {
+    SheenTable* first = &sheens_[first_sheen_[surface.material]];
+    const double roughness = std::max(surface.optics.sheen_roughness, SHEEN_LEAST_ROUGHNESS);
+    const bool varies = first_sheen_[surface.material + 1] > first_sheen_[surface.material] + 1;
+    if (!varies) return look_up(*first, sheen::alpha_of(roughness), cosine);
+    constexpr double last = roughnesses - 1;
+    const double place = (roughness - SHEEN_LEAST_ROUGHNESS) / (1 - SHEEN_LEAST_ROUGHNESS) * last;
+    const size_t lower = std::min(size_t(place), roughnesses - 2);
+    const auto table = [&](size_t i) {
+        const double of = glm::mix(SHEEN_LEAST_ROUGHNESS, 1.0, double(i) / last);
+        return look_up(first[i], sheen::alpha_of(of), cosine);
+    };
+    return glm::mix(table(lower), table(lower + 1), place - double(lower));
 }
 
 }  // namespace peelray

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -16,15 +17,20 @@ class Albedos {
     struct Means {
         glm::dvec3 dielectric{0};        ///< share of the dielectric part
         double normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
+        double masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
+        /// To the microfacet whose grazing light, as Schlick's formula has it, is the mean.
+        double cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
         glm::dvec3 metal(const glm::dvec3& base_color) const { return base_color * normal + grazing; }
     };
 
     Albedos(const Scene& scene, const Surfaces& surfaces);
 
-    /// `cosine`: between the view and the surface's normal.
+    /// Without thin films and dispersion. `cosine`: between the view and the surface's normal.
     Means at(const Surface& surface, double cosine) const;
     /// The share that the surface's clear coat mirrors; `cosine`: between the view and the coat's normal.
     double coat(const Surface& surface, double cosine) const;
+    /// The share that a white sheen of the surface's roughness reflects.
+    double sheen(const Surface& surface, double cosine) const;
 
   private:
     static constexpr size_t steps = 64;  ///< in the square root of the cosine
@@ -33,8 +39,16 @@ class Albedos {
         std::array<Means, steps + 1> entries;
     };
 
-    /// Materials whose roughness a texture changes have a table for each of these, in the square root of the roughness;
-    /// the others one, for their own.
+    /// Of white sheens of one roughness.
+    struct SheenTable {
+        static constexpr size_t steps = 256;  ///< in the square root of the cosine
+        std::once_flag made;
+        std::array<double, steps + 1> entries;
+    };
+    static double look_up(SheenTable& table, double alpha, double cosine);
+
+    /// Materials whose roughness a texture changes, or whose lobes are stretched where there are tangents, have a table
+    /// for each of these, in the square root of the roughness; the others one, for their own.
     static constexpr size_t roughnesses = 65;
     Means look_up(Table& table, const Optics& constants, double roughness, double cosine) const;
     /// Between those of the roughnesses around; `first`: of as many tables.
@@ -44,6 +58,9 @@ class Albedos {
     std::vector<size_t> first_table_;  ///< per material, and the end
     std::unique_ptr<Table[]> tables_;
     std::unique_ptr<Table[]> coats_;  ///< of all coats
+    /// Per material, or where a texture changes the roughness, equally spaced from the least on.
+    std::vector<size_t> first_sheen_;
+    std::unique_ptr<SheenTable[]> sheens_;
 };
 
 }  // namespace peelray

@@ -48,21 +48,54 @@ double ggx_masking(double cosine, double alpha) {
     return 2 * cosine / (cosine + std::sqrt(a2 + (1 - a2) * cosine * cosine));
 }
 
-glm::dvec3 sample_ggx(const glm::dvec3& view, double alpha, const glm::dvec2& random) {
+glm::dvec3 sample_ggx(const glm::dvec3& view, const glm::dvec2& alpha, const glm::dvec2& random) {
     // The hemisphere's visible disc is warped as the stretched view sees it, then unstretched.
-    const glm::dvec3 v = glm::normalize(glm::dvec3(alpha * view.x, alpha * view.y, view.z));
+    const glm::dvec3 v = glm::normalize(glm::dvec3(alpha.x * view.x, alpha.y * view.y, view.z));
     const double flat = std::hypot(v.x, v.y);
     const glm::dvec3 t1 = flat > 0 ? glm::dvec3(-v.y, v.x, 0) / flat : glm::dvec3(1, 0, 0), t2 = glm::cross(v, t1);
     const double r = std::sqrt(random.x), phi = 2 * pi * random.y, s = (1 + v.z) / 2;
     const double p1 = r * std::cos(phi);
     const double p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * r * std::sin(phi);
     const glm::dvec3 n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2)) * v;
-    return glm::normalize(glm::dvec3(alpha * n.x, alpha * n.y, std::max(1e-6, n.z)));
+    return glm::normalize(glm::dvec3(alpha.x * n.x, alpha.y * n.y, std::max(1e-6, n.z)));
 }
 
 Tangents tangents(const glm::dvec3& n) {
     const double s = n.z >= 0 ? 1 : -1, a = -1 / (s + n.z), c = n.x * n.y * a;
     return {{1 + s * n.x * n.x * a, s * c, -s * n.x}, {c, s + n.y * n.y * a, -n.y}};
+}
+
+glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& random) {
+    const auto [t, b] = tangents(normal);
+    const double r = std::sqrt(random.x), phi = 2 * pi * random.y;
+    const glm::dvec3 up = normal * std::sqrt(std::max(0.0, 1 - random.x));
+    return t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up;
+}
+
+Lobe::Lobe(const glm::dvec3& normal, double alpha) : n(normal), alpha(alpha) {
+    const Tangents any = tangents(normal);
+    t = any.t;
+    b = any.b;
+}
+
+Lobe::Lobe(const glm::dvec3& normal, const glm::dvec3& along, const glm::dvec2& alpha)
+    : t(along), b(glm::cross(normal, along)), n(normal), alpha(alpha) {}
+
+double Lobe::distribution(const glm::dvec3& half) const {
+    const glm::dvec3 h = local(half), stretched(h.x / alpha.x, h.y / alpha.y, h.z);
+    const double k = glm::dot(stretched, stretched);
+    return 1 / (pi * alpha.x * alpha.y * k * k);
+}
+
+double Lobe::masking(const glm::dvec3& direction) const {
+    const glm::dvec3 d = local(direction), stretched(d.x * alpha.x, d.y * alpha.y, d.z);
+    return d.z > 0 ? 2 * d.z / (d.z + glm::length(stretched)) : 0;
+}
+
+glm::dvec3 Lobe::sample(const glm::dvec3& view, const glm::dvec2& random) const {
+    const glm::dvec3 v = local(view), above(v.x, v.y, std::max(GRAZING_COSINE, v.z));
+    const glm::dvec3 h = sample_ggx(glm::normalize(above), alpha, random);
+    return glm::normalize(t * h.x + b * h.y + n * h.z);
 }
 
 glm::uvec3 hash3(glm::uvec3 v) {

@@ -32,14 +32,36 @@ glm::dvec3 above_surface(const glm::dvec3& direction, const glm::dvec3& geometri
 double ggx_distribution(double n_h, double alpha);
 /// Smith's masking of one direction.
 double ggx_masking(double cosine, double alpha);
-/// A visible normal (Heitz, JCGT 2018); `view` and the result in the frame whose z is the surface's normal.
-glm::dvec3 sample_ggx(const glm::dvec3& view, double alpha, const glm::dvec2& random);
+/// A visible normal (Heitz, JCGT 2018); `view` and the result in the frame whose z is the surface's normal; `alpha`:
+/// along its x and y.
+glm::dvec3 sample_ggx(const glm::dvec3& view, const glm::dvec2& alpha, const glm::dvec2& random);
 
 struct Tangents {
     glm::dvec3 t, b;
 };
 /// Duff et al., JCGT 2017.
 Tangents tangents(const glm::dvec3& n);
+
+/// A direction in front of a surface, its density the cosine over pi; `random` in [0, 1).
+glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& random);
+
+/// Microfacets of GGX around a normal, wider along t than along b where the surface is brushed (Heitz, JCGT 2014).
+struct Lobe {
+    glm::dvec3 t, b, n;
+    glm::dvec2 alpha;  ///< along t and b
+
+    Lobe(const glm::dvec3& normal, double alpha);
+    /// `along`: unit, perpendicular to the normal.
+    Lobe(const glm::dvec3& normal, const glm::dvec3& along, const glm::dvec2& alpha);
+    double distribution(const glm::dvec3& half) const;
+    /// Smith's masking of a direction; 0 below the surface.
+    double masking(const glm::dvec3& direction) const;
+    /// A visible normal.
+    glm::dvec3 sample(const glm::dvec3& view, const glm::dvec2& random) const;
+
+  private:
+    glm::dvec3 local(const glm::dvec3& d) const { return {glm::dot(d, t), glm::dot(d, b), glm::dot(d, n)}; }
+};
 
 /// pcg3d (Jarzynski, Olano, JCGT 2020): bit for bit the GPU's.
 glm::uvec3 hash3(glm::uvec3 v);

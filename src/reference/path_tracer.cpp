@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -53,6 +54,42 @@ Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x,
     path.seed = optics::hash3({x, y, 0}).x;
     return path;
 }
+
+/// Where a point is in the picture that a camera sees, pixels from its middle, right and up.
+glm::dvec2 place_in_picture(const View& view, const PictureSettings& s, const glm::dvec3& point) {
+    const glm::dvec3 p = point - glm::dvec3(view.eye), right(view.right), up(view.up);
+    glm::dvec2 place(glm::dot(p, right) / glm::dot(right, right), glm::dot(p, up) / glm::dot(up, up));
+    if (!view.orthographic) place /= glm::dot(p, glm::dvec3(view.forward));
+    return 0.5 * place * glm::dvec2(s.width, s.height);
+}
+
+/// The scene and its camera at the moment before.
+struct Before {
+    View view;
+    Geometry geometry;
+
+    /// Aovs::motion of a hit of the triangles as they are now.
+    glm::vec2 motion(const Geometry& geometry_now, const OracleHit& hit, const View& view_now,
+                     const PictureSettings& s) const {
+        // As they are in order now: of a triangle that has been turned over since, the second and third were the
+        // other way round.
+        const glm::uvec3 corners = geometry_now.triangles[hit.triangle];
+        const auto point = [&](const Geometry& g) {
+            const glm::dvec3 a = g.positions[corners.x], b = g.positions[corners.y], c = g.positions[corners.z];
+            return a + hit.u * (b - a) + hit.v * (c - a);
+        };
+        const glm::dvec3 p = point(geometry);
+        const glm::dvec3 ahead = p - glm::dvec3(view.eye);
+        if (!view.orthographic && !(glm::dot(ahead, glm::dvec3(view.forward)) > double(view.near))) return glm::vec2(0);
+        return place_in_picture(view, s, p) - place_in_picture(view_now, s, point(geometry_now));
+    }
+};
+
+/// What the camera sees through, now and, for Aovs::motion, at the moment before.
+struct Views {
+    View now;
+    std::optional<Before> before;
+};
 
 void prepare(Picture& picture, const PictureSettings& s) {
     const size_t pixels = size_t(s.width) * s.height;
@@ -104,12 +141,29 @@ struct PathTracer::Impl {
         for (const uint32_t material : MediaPieces(scene).around(scene, placed, camera.eye)) start.enter(material);
         return start;
     }
+    Views views(const PictureSettings& s, const Box& box) const;
+    /// Numbers as Geometry::objects does.
+    uint32_t object_of(uint32_t triangle) const;
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
-    void pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
+    void pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                RayCounts& rays) const;
-    RayCounts work(Picture& picture, const RenderContext& context, const View& view, Tiles& tiles,
+    RayCounts work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
                    const std::function<void(double)>& progress) const;
 };
+
+Views PathTracer::Impl::views(const PictureSettings& s, const Box& box) const {
+    const float aspect = float(s.width) / float(s.height);
+    Views views{make_view(s.camera, aspect, box.lower, box.upper), {}};
+    if (s.aovs && s.motion)
+        views.before = Before{make_view(s.camera_before, aspect, box.lower, box.upper),
+                              s.moment_before ? flatten(scene, *s.moment_before) : geometry};
+    return views;
+}
+
+uint32_t PathTracer::Impl::object_of(uint32_t triangle) const {
+    const auto after = std::ranges::upper_bound(geometry.objects, triangle, {}, &Geometry::Object::first);
+    return uint32_t(after - geometry.objects.begin()) - 1;
+}
 
 void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit,
                             const Box& box) const {
@@ -117,6 +171,7 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     Aovs& a = picture.aovs;
     a.depth[at] = float(hit.t);
     a.triangle[at] = float(hit.triangle);
+    a.instance[at] = float(object_of(hit.triangle));
     a.material[at] = float(s.material);
     a.normal[at] = glm::vec4(s.normal, 0);
     a.albedo[at] = glm::vec4(s.optics.base_color, 1);
@@ -130,14 +185,14 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.directions[at] = glm::mat2x4(d.y, d.z, d.z, d.x, d.x, d.y, 0, 0);
 }
 
-void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const View& view, uint32_t x, uint32_t y,
+void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                              RayCounts& rays) const {
     const PictureSettings& s = context.settings;
     const size_t at = size_t(y) * s.width + x;
     glm::dvec4 sum(0);
     glm::dvec3 unlit(0);  // of it, what a display shows as it is
     for (uint32_t sample = 0; sample < s.spp; sample++) {
-        Shader::Path path = camera_path(view, s, x, y, sample_position(sample));
+        Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
         Shader shader(context, sample);
         const Meeting meeting = shader.hit(path);
@@ -148,9 +203,11 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
         if (usable) unlit += shader.unlit();
-        if (s.aovs && sample == 0 && hit.hit())
-            aovs(picture, at, path, bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit,
-                 context.box);
+        if (s.aovs && sample == 0 && hit.hit()) {
+            const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
+            aovs(picture, at, path, first, context.box);
+            if (views.before) picture.aovs.motion[at] = views.before->motion(geometry, first, views.now, s);
+        }
         rays += shader.rays();
     }
     sum /= double(s.spp);
@@ -160,7 +217,7 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
 }
 
 /// One thread's share: tiles until there are none left.
-RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context, const View& view, Tiles& tiles,
+RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
                                  const std::function<void(double)>& progress) const {
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
@@ -168,7 +225,7 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
         // Reports come once per row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
         for (uint32_t row = 0; row < std::min(tile_size, picture.height - top) && !tiles.stop; row++) {
             for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
-                pixel(picture, context, view, x, top + row, rays);
+                pixel(picture, context, views, x, top + row, rays);
             if (progress) progress((tile + row / double(tile_size)) / tiles.count());
         }
     }
@@ -188,9 +245,8 @@ std::string PathTracer::version() {
 Picture PathTracer::render(const PictureSettings& settings, const std::function<void(double)>& progress,
                            unsigned threads) const {
     check_settings(settings);
-    const float aspect = float(settings.width) / float(settings.height);
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
-    const View view = make_view(settings.camera, aspect, box.lower, box.upper);
+    const Views views = impl_->views(settings, box);
     const RenderContext context{impl_->bvh,
                                 impl_->surfaces,
                                 impl_->albedos,
@@ -216,7 +272,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
         }
     };
     const auto share = [&](const std::function<void(double)>& report) {
-        const RayCounts rays = impl_->work(picture, context, view, tiles, report);
+        const RayCounts rays = impl_->work(picture, context, views, tiles, report);
         const std::lock_guard lock(mutex);
         picture.rays += rays;
     };

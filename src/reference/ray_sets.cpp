@@ -88,10 +88,7 @@ class PixelRays {
 
     static glm::dvec3 cosine_direction(const Surface& s, uint32_t seed, uint32_t sample) {
         const glm::dvec2 random = optics::random_pair(seed, sample, optics::Purpose::sky);
-        const auto [t, b] = optics::tangents(s.normal);
-        const double r = std::sqrt(random.x), phi = 2 * optics::pi * random.y;
-        const glm::dvec3 up = s.normal * std::sqrt(std::max(0.0, 1 - random.x));
-        return optics::above_surface(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + up, s.geometric);
+        return optics::above_surface(optics::cosine_direction(s.normal, random), s.geometric);
     }
 
     void add_shadow(const Surface& s, uint32_t triangle, Parts& out) const {

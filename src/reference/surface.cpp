@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/film.h"
 #include "reference/optics.h"
 #include "scene/sampling.h"
 
@@ -18,27 +19,109 @@ Optics::Optics(const Material& m)
       ior(m.ior == 0 ? 1 : std::max(m.ior, 1.0f)),
       specified(m.ior == 0 || m.specular != 1 || m.specular_color != glm::vec3(1)),
       f90(m.specular),
+      sheen(m.sheen_color),
+      sheen_roughness(m.sheen_roughness),
+      film(m.iridescence),
+      film_ior(std::max(m.film_ior, 1.0f)),
+      film_thickness(m.film_most),
+      anisotropy(m.anisotropy),
+      behind(m.diffuse_transmission),
+      behind_color(m.diffuse_transmission_color),
       thin(m.thickness <= 0),
       unlit(m.unlit) {
     // KHR_materials_ior: an index of 0 stands for an infinite one, which reflects all. KHR_materials_specular.
     normal = m.ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2);
     f0 = glm::min(normal * glm::dvec3(m.specular_color), 1.0) * f90;
+    // KHR_materials_dispersion: of volumes alone.
+    if (m.thickness > 0 && peelray::transmits(m)) spread = (ior - 1) * DISPERSION_SPREAD * double(m.dispersion);
     // KHR_materials_volume: white becomes attenuation_color after attenuation_distance.
     if (std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
         absorption =
             -glm::log(glm::max(glm::dvec3(m.attenuation_color), glm::dvec3(1e-6))) / double(m.attenuation_distance);
 }
 
-glm::dvec3 Optics::face_reflectance(double cosine, bool leaving) const {
-    if (!specified) return glm::dvec3(optics::fresnel_dielectric(cosine, leaving ? 1 / ior : ior));
-    if (!leaving) return optics::fresnel_schlick(f0, f90, cosine);
-    // The formula's angle is the one outside, where there is one.
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * ior;
-    return sine >= 1 ? glm::dvec3(1) : optics::fresnel_schlick(f0, f90, std::sqrt(1 - sine * sine));
+glm::dvec2 Optics::alphas() const {
+    const double alpha = roughness * roughness;
+    if (anisotropy == 0) return glm::dvec2(alpha);
+    const double across = std::max(alpha, MIRROR_ROUGHNESS * MIRROR_ROUGHNESS);
+    return {glm::mix(across, 1.0, anisotropy * anisotropy), across};
 }
 
-glm::dvec3 Optics::wall_reflectance(double cosine, bool leaving) const {
-    const glm::dvec3 face = face_reflectance(cosine, leaving);
+double Optics::lobe_roughness() const {
+    if (anisotropy == 0) return roughness;
+    const glm::dvec2 alpha = alphas();
+    return std::max(MIRROR_ROUGHNESS, std::pow(alpha.x * alpha.y, 0.25));
+}
+
+double Optics::mean_roughness() const {
+    if (anisotropy == 0) return roughness;
+    const glm::dvec2 a = alphas();
+    return std::pow(glm::dot(a, a) / 2, 0.25);
+}
+
+double Optics::index(Channel channel) const {
+    const double side = channel == Channel::red ? -1 : channel == Channel::blue ? 1 : 0;
+    return std::max(1.0, ior + side * spread);
+}
+
+/// Whose index counts for a component of what a ray carries.
+Channel Optics::channel_of(int component, Channel carried) const {
+    return carried == Channel::all ? Channel(component) : carried;
+}
+
+/// Cosine in air of light that leaves a volume; negative at total internal reflection.
+static double cosine_outside(double cosine, double index) {
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * index;
+    return sine >= 1 ? -1 : std::sqrt(1 - sine * sine);
+}
+
+glm::dvec3 Optics::plain_reflectance(double cosine, bool leaving, Channel channel) const {
+    if (!specified && spread == 0) return glm::dvec3(optics::fresnel_dielectric(cosine, leaving ? 1 / ior : ior));
+    glm::dvec3 all;
+    for (int k = 0; k < 3; k++) {
+        const double n = index(channel_of(k, channel));
+        if (!specified) {
+            all[k] = optics::fresnel_dielectric(cosine, leaving ? 1 / n : n);
+            continue;
+        }
+        // The formula's angle is the one outside, where there is one.
+        const double outside = leaving ? cosine_outside(cosine, n) : cosine;
+        all[k] = outside < 0 ? 1 : optics::fresnel_schlick(f0, f90, outside)[k];
+    }
+    return all;
+}
+
+/// A lossless film is the same mirror from both of its sides.
+glm::dvec3 Optics::film_reflectance(const glm::dvec3& base, double cosine, bool leaving, Channel channel) const {
+    if (!leaving) return film::reflectance(std::min(cosine, 1.0), film_ior, film_thickness, base);
+    glm::dvec3 all;
+    for (int k = 0; k < 3; k++) {
+        const double outside = cosine_outside(cosine, index(channel_of(k, channel)));
+        all[k] = outside < 0 ? 1 : film::reflectance(outside, film_ior, film_thickness, base)[k];
+    }
+    return all;
+}
+
+glm::dvec3 Optics::film_on_dielectric(double cosine, bool leaving, Channel channel) const {
+    return film_reflectance(specified ? film::index_of(f0) : glm::dvec3(ior), cosine, leaving, channel);
+}
+
+glm::dvec3 Optics::film_on_metal(double cosine, bool leaving, Channel channel) const {
+    return film_reflectance(film::index_of(base_color), cosine, leaving, channel);
+}
+
+glm::dvec3 Optics::face_reflectance(double cosine, bool leaving, Channel channel) const {
+    const glm::dvec3 plain = plain_reflectance(cosine, leaving, channel);
+    return film == 0 ? plain : glm::mix(plain, film_on_dielectric(cosine, leaving, channel), film);
+}
+
+glm::dvec3 Optics::metal_reflectance(double cosine, bool leaving, Channel channel) const {
+    const glm::dvec3 plain = optics::fresnel_schlick(base_color, 1, cosine);
+    return film == 0 || metallic == 0 ? plain : glm::mix(plain, film_on_metal(cosine, leaving, channel), film);
+}
+
+glm::dvec3 Optics::wall_reflectance(double cosine, bool leaving, Channel channel) const {
+    const glm::dvec3 face = face_reflectance(cosine, leaving, channel);
     return transmits() && thin ? 2.0 * face / (1.0 + face) : face;
 }
 
@@ -104,6 +187,7 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
         s.shadow_start += weights[i] * (stray ? s.position : s.position - below * corner_normal);
     }
     s.optics = evaluate(s.material, place);
+    if (s.optics.anisotropy > 0) stretch(s, place, interpolated);
     return s;
 }
 
@@ -168,6 +252,13 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
     o.transmission *= number(m.transmission_texture, place);
     o.clearcoat = double(m.clearcoat) * number(m.clearcoat_texture, place);
     o.coat_roughness = double(m.coat_roughness) * number(m.coat_roughness_texture, place);
+    o.sheen *= color(m.sheen_color_texture, place);
+    o.sheen_roughness *= number(m.sheen_roughness_texture, place);
+    o.film *= number(m.iridescence_texture, place);
+    o.film_thickness = glm::mix(double(m.film_least), double(m.film_most), number(m.film_thickness_texture, place));
+    o.behind *= number(m.diffuse_transmission_texture, place);
+    o.behind_color *= color(m.diffuse_transmission_color_texture, place);
+    if (!o.thin) o.behind_color *= glm::exp(-o.absorption * double(m.thickness) * number(m.thickness_texture, place));
     if (m.specular_texture || m.specular_color_texture) {
         o.f90 *= number(m.specular_texture, place);
         o.f0 = glm::min(o.normal * glm::dvec3(m.specular_color) * color(m.specular_color_texture, place), 1.0) * o.f90;
@@ -177,20 +268,47 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
     return o;
 }
 
+std::optional<glm::dmat2x3> Surfaces::tangents(const Place& place, const glm::dvec3& normal) const {
+    if (geometry_.tangents.empty()) return {};
+    const glm::dvec4 along = place.interpolate(geometry_.tangents);
+    const glm::dvec3 tangent(along);
+    if (along.w == 0 || glm::dot(tangent, tangent) == 0) return {};
+    return glm::dmat2x3(tangent, (along.w < 0 ? -1.0 : 1.0) * glm::cross(normal, tangent));
+}
+
 /// glTF 2.0, section 3.9.3: red, green and blue are the normal's parts along the tangent, the bitangent and the normal,
 /// which are interpolated and, as MikkTSpace has it, not made unit before.
 std::optional<glm::dvec3> Surfaces::bent(const MaterialTexture& use, double scale, const Place& place,
                                          const glm::dvec3& normal) const {
-    if (!use || geometry_.tangents.empty()) return {};
-    const glm::dvec4 along = place.interpolate(geometry_.tangents);
-    const glm::dvec3 tangent(along);
-    if (along.w == 0 || glm::dot(tangent, tangent) == 0) return {};
-    const glm::dvec3 bitangent = (along.w < 0 ? -1.0 : 1.0) * glm::cross(normal, tangent);
+    if (!use) return {};
+    const auto frame = tangents(place, normal);
+    if (!frame) return {};
     const glm::dvec3 texel(data(use, place));
     const glm::dvec3 parts = (texel * 2.0 - 1.0) * glm::dvec3(scale, scale, 1);
-    const glm::dvec3 sum = tangent * parts.x + bitangent * parts.y + normal * parts.z;
+    const glm::dvec3 sum = *frame * glm::dvec2(parts) + normal * parts.z;
     if (glm::dot(sum, sum) == 0) return {};
     return glm::normalize(sum);
+}
+
+/// KHR_materials_anisotropy: how much the lobe is stretched, and its direction on the surface; none: it is round.
+void Surfaces::stretch(Surface& s, const Place& place, const glm::dvec3& normal) const {
+    const Material& m = scene_.materials[s.material];
+    double strength = s.optics.anisotropy;
+    s.optics.anisotropy = 0;
+    const auto frame = tangents(place, normal);
+    if (!frame) return;
+    glm::dvec2 direction(1, 0);
+    if (m.anisotropy_texture) {
+        const glm::dvec3 texel(data(m.anisotropy_texture, place));
+        direction = glm::dvec2(texel) * 2.0 - 1.0;
+        strength *= texel.z;
+    }
+    const double c = std::cos(double(m.anisotropy_rotation)), sine = std::sin(double(m.anisotropy_rotation));
+    const glm::dvec2 turned(c * direction.x - sine * direction.y, sine * direction.x + c * direction.y);
+    const glm::dvec3 along = *frame * turned, flat = along - glm::dot(along, s.normal) * s.normal;
+    if (glm::dot(flat, flat) == 0) return;
+    s.along = glm::normalize(flat);
+    s.optics.anisotropy = strength;
 }
 
 glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {

@@ -13,6 +13,10 @@
 
 namespace peelray {
 
+/// What of light that disperses a ray carries. Rays that carry all of it see each channel reflected by its own index
+/// and bent by the middle one, green's.
+enum class Channel { red, green, blue, all };
+
 /// A material: its constants, or what its textures make of them at a point.
 struct Optics {
     glm::dvec3 base_color{1}, emissive{0}, absorption{0};  ///< absorption: per world unit inside the volume
@@ -26,6 +30,13 @@ struct Optics {
     double occlusion = 1;  ///< share of the sky's diffuse light that arrives
     double alpha = 1;      ///< share of the surface that is there
     double clearcoat = 0, coat_roughness = 0;
+    glm::dvec3 sheen{0};
+    double sheen_roughness = 0;
+    double film = 0, film_ior = 1, film_thickness = 0;  ///< share that a thin film covers; nm
+    double anisotropy = 0;                              ///< of the lobe; > 0 only where it has a direction
+    double spread = 0;                                  ///< of the index: how far red's and blue's are from the middle
+    double behind = 0;                                  ///< share of the diffuse light that comes out behind
+    glm::dvec3 behind_color{1};
     bool thin = true, unlit = false;
 
     Optics() = default;
@@ -35,18 +46,37 @@ struct Optics {
     glm::dvec3 tint() const { return (1 - metallic) * transmission * base_color; }
     /// Is a ray that meets the surface from its `front` or back inside of the volume?
     bool leaves(bool front) const { return transmits() && !thin && !front; }
+    /// Widths of the lobe of microfacets, where it is stretched: along its direction and across.
+    glm::dvec2 alphas() const;
+    /// Of the round lobe that is as large: what decides by a roughness goes by this one.
+    double lobe_roughness() const;
+    /// Of the round lobe that masks about as much.
+    double mean_roughness() const;
+    /// Index of refraction, ≥ 1; all: the middle one.
+    double index(Channel channel) const;
     /// Of one face of the dielectric part; `cosine` ≥ 0 on the incoming side, `leaving`: from inside.
-    glm::dvec3 face_reflectance(double cosine, bool leaving) const;
+    glm::dvec3 face_reflectance(double cosine, bool leaving, Channel channel = Channel::all) const;
     /// Of what a ray meets: a thin wall has two faces.
-    glm::dvec3 wall_reflectance(double cosine, bool leaving) const;
+    glm::dvec3 wall_reflectance(double cosine, bool leaving, Channel channel = Channel::all) const;
+    /// Of the metal part.
+    glm::dvec3 metal_reflectance(double cosine, bool leaving, Channel channel = Channel::all) const;
+    /// Of a thin film that covers all of the dielectric or of the metal part.
+    glm::dvec3 film_on_dielectric(double cosine, bool leaving, Channel channel = Channel::all) const;
+    glm::dvec3 film_on_metal(double cosine, bool leaving, Channel channel = Channel::all) const;
+
+  private:
+    glm::dvec3 film_reflectance(const glm::dvec3& base, double cosine, bool leaving, Channel channel) const;
+    glm::dvec3 plain_reflectance(double cosine, bool leaving, Channel channel) const;
+    Channel channel_of(int component, Channel carried) const;
 };
 
 /// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
 struct Surface {
     glm::dvec3 position;
-    glm::dvec3 geometric;     ///< unit normal of the triangle, on the ray's side
-    glm::dvec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
-    glm::dvec3 coat_normal;   ///< of a clear coat
+    glm::dvec3 geometric;    ///< unit normal of the triangle, on the ray's side
+    glm::dvec3 normal;       ///< interpolated and bent by the normal texture, unit, on the ray's side
+    glm::dvec3 coat_normal;  ///< of a clear coat
+    glm::dvec3 along{0};     ///< of a surface with anisotropy: where the lobe is stretched, unit, in the normal's plane
     glm::dvec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
     double extent;            ///< the largest coordinate of the triangle
     double error;             ///< bound on the position's rounding error, world units
@@ -101,6 +131,9 @@ class Surfaces {
     double number(const MaterialTexture& use, const Place& place) const;
     glm::dvec3 color(const MaterialTexture& use, const Place& place) const;
     Optics evaluate(uint32_t material, const Place& place) const;
+    /// The interpolated tangent and bitangent, neither made unit; nothing where there are none.
+    std::optional<glm::dmat2x3> tangents(const Place& place, const glm::dvec3& normal) const;
+    void stretch(Surface& surface, const Place& place, const glm::dvec3& normal) const;
     /// The interpolated normal as a normal texture bends it, unit; nothing where none does.
     std::optional<glm::dvec3> bent(const MaterialTexture& use, double scale, const Place& place,
                                    const glm::dvec3& normal) const;

@@ -27,15 +27,18 @@ void AovPictures::render(FrameState& f, Aovs& aovs) {
                                         {{"rays", f.queues.level(0).rays},
                                          {"hits", f.queues.level(0).hits},
                                          {"aovs", buffer_},
-                                         {"triangle_ids", f.scene.triangle_ids}}),
+                                         {"triangle_ids", f.scene.triangle_ids},
+                                         {"triangle_objects", f.scene.triangle_objects}}),
                        p, groups_for(p.capacity, 64));
+        if (settings.motion) motion_.record(f, p);
     }
     f.commands.submit();
     const auto records = f.commands.download<AovSurface>(buffer_, pixels);
 #define AOV_STORE(name, type, channels, nothing) \
     for (const AovSurface& record : records) aovs.name.push_back(record.name);
-    SURFACE_AOVS(AOV_STORE)
+    SEEN_AOVS(AOV_STORE)
 #undef AOV_STORE
+    motion_.store(f, aovs);
 }
 
 /// The paper's Figure 7, in render targets.

@@ -1,19 +1,22 @@
 // Auxiliary pictures (AOVs) of what the camera sees.
 #pragma once
 
-#include "render/frame_state.h"
+#include "render/motion_picture.h"
 
 namespace peelray {
 
 class AovPictures {
   public:
-    /// Renders those of Aovs up to `position`, at the pixels' centres, after the picture itself.
+    /// Renders those of Aovs up to `motion`, at the pixels' centres, after the picture itself. For `motion` itself
+    /// motion().look_back() comes before the picture.
     void render(FrameState& f, Aovs& aovs);
+    MotionPicture& motion() { return motion_; }
     /// And those that follow, from what render() left on the device; `box`: of the scene.
     void render_ray_setup(FrameState& f, const Box& box, Aovs& aovs);
 
   private:
-    Buffer buffer_;  ///< four vec4 a pixel, as aov.comp writes them
+    Buffer buffer_;  ///< AovSurface a pixel
+    MotionPicture motion_;
 };
 
 }  // namespace peelray

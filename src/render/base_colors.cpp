@@ -8,8 +8,10 @@
 
 #include "base/error.h"
 #include "common/material.h"
+#include "path/shading_numbers.h"
 #include "render/fresnel_fit.h"
 #include "scene/mipmaps.h"
+#include "scene/picture.h"
 #include "scene/sidedness.h"
 
 namespace peelray {
@@ -33,6 +35,35 @@ void set_reflectance(GpuMaterial& m, const Material& material) {
     }
 }
 
+/// What few materials have.
+void set_rare_parts(GpuMaterial& m, const Material& material) {
+    m.sheen_color = material.sheen_color;
+    m.sheen_roughness = material.sheen_roughness;
+    m.iridescence = material.iridescence;
+    m.film_ior = std::max(material.film_ior, 1.0f);
+    m.film_most = material.film_most;
+    m.film_least = material.film_thickness_texture ? material.film_least : material.film_most;
+    m.anisotropy = material.anisotropy;
+    m.anisotropy_along = {std::cos(material.anisotropy_rotation), std::sin(material.anisotropy_rotation)};
+    m.spread =
+        material.ior == 0 ? 0 : float(DISPERSION_SPREAD) * material.dispersion * (std::max(material.ior, 1.0f) - 1);
+    m.diffuse_transmission = material.diffuse_transmission;
+    m.diffuse_transmission_color = material.diffuse_transmission_color;
+}
+
+/// MATERIALS_* of one material, those of textures excepted.
+uint32_t material_kinds(const Material& material, const GpuMaterial& m) {
+    uint32_t kinds = m.flags & MATERIAL_SCHLICK ? MATERIALS_SPECIFIED : 0;
+    if (material.blended) kinds |= MATERIALS_BLENDED;
+    if (material.clearcoat > 0) kinds |= MATERIALS_COATED;
+    if (material.sheen_color != glm::vec3(0)) kinds |= MATERIALS_SHEEN;
+    if (material.iridescence > 0) kinds |= MATERIALS_FILMED;
+    if (material.anisotropy > 0) kinds |= MATERIALS_STRETCHED;
+    if (m.spread > 0 && transmits(material) && material.thickness > 0) kinds |= MATERIALS_DISPERSIVE;
+    if (material.diffuse_transmission > 0) kinds |= MATERIALS_SEEPING;
+    return kinds;
+}
+
 GpuMaterial gpu_material(const Material& material, bool colored) {
     GpuMaterial m{};
     m.base_color = material.base_color;
@@ -45,6 +76,7 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     m.clearcoat = material.clearcoat;
     m.coat_roughness = material.coat_roughness;
     m.coat_normal_scale = material.coat_normal_scale;
+    set_rare_parts(m, material);
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
               (colored ? MATERIAL_COLORED : 0u) | (material.blended ? MATERIAL_BLENDED : 0u) |
               (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
@@ -194,6 +226,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
         const Material& material = scene.materials[i];
         GpuMaterial m = gpu_material(material, !assembly.colors.empty());
         m.first_tangent = out.first_tangent;
+        if (assembly.tangents.empty()) m.anisotropy = 0;  // there is nothing to read a direction from
         for (int k = 0; k < TEXTURE_USES; k++) {
             const MaterialTexture& use = material.*material_textures[size_t(k)];
             const bool read = used[i] && (shades || (k == TEXTURE_BASE_COLOR && material.alpha_cutoff > 0));
@@ -202,11 +235,10 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             m.channels[k >> 4] |= use.channel << 2 * (k & 15);
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;
-            if (k != TEXTURE_NORMAL && k != TEXTURE_COAT_NORMAL) m.flags |= MATERIAL_TEXTURED;
+            if (k != TEXTURE_NORMAL && k != TEXTURE_COAT_NORMAL && k != TEXTURE_ANISOTROPY)
+                m.flags |= MATERIAL_TEXTURED;
         }
-        if (used[i] && m.flags & MATERIAL_SCHLICK) out.kinds |= MATERIALS_SPECIFIED;
-        if (used[i] && material.blended) out.kinds |= MATERIALS_BLENDED;
-        if (used[i] && material.clearcoat > 0) out.kinds |= MATERIALS_COATED;
+        if (used[i]) out.kinds |= material_kinds(material, m);
         materials.push_back(m);
     }
     if (std::ranges::any_of(textures.table, is_filtered)) out.kinds |= MATERIALS_FILTERED;

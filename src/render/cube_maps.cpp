@@ -194,14 +194,13 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
     const Groups groups = groups_for(params.capacity, 64);
     commands.run(device_.pass("cubemap_scatter", {scene_.base_colors.constant()}),
                  surface_bindings(scene_, frame,
-                                  {{"environment", scene_.environment},
+                                  {{"lookups", scene_.lookups},
                                    {"rays", level.rays},
                                    {"states", level.states},
                                    {"hits", level.hits},
                                    {"nodes", level.nodes},
                                    {"triangle_objects", scene_.triangle_objects},
                                    {"objects", current_ ? with_probes_ : objects_.without_probes()},
-                                   {"split_sum", scene_.split_sum},
                                    Binding::if_used("probes", current_)}),
                  params, groups);
     commands.run(device_.pass("cubemap_shadow", {scene_.base_colors.constant()}),
@@ -211,8 +210,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
                                    {"nodes", level.nodes},
                                    {"lights", scene_.lights},
                                    {"shadow_maps", shadows_.maps()},
-                                   {"shadow_depths", shadows_.depths()},
-                                   {"split_sum", scene_.split_sum}}),
+                                   {"shadow_depths", shadows_.depths()}}),
                  params, groups);
 }
 

@@ -1,6 +1,7 @@
 // What the stages of a frame share.
 #pragma once
 
+#include "common/material.h"
 #include "render/bands.h"
 #include "render/camera_view.h"
 #include "render/cost_counter.h"
@@ -36,7 +37,8 @@ struct FrameState {
     /// Shadow rays that a hit may start.
     uint32_t lights_per_hit() const {
         if (!tracer->traces()) return 0;
-        return (settings.shadow ? uint32_t(scene.light_list.size()) : 0) + (settings.ambient ? 1 : 0);
+        const uint32_t skies = scene.base_colors.kinds & MATERIALS_SEEPING ? 2 : 1;  // in front, and behind
+        return (settings.shadow ? uint32_t(scene.light_list.size()) : 0) + (settings.ambient ? skies : 0);
     }
     /// Are rays traced that may be in several media at once?
     bool layered() const { return tracer->traces() && (scene.layered || constants.camera_media != glm::uvec2(0)); }

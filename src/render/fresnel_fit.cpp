@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "path/split_sum.h"
+#include "path/tables.h"
 
 namespace peelray {
 namespace {

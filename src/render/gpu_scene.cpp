@@ -7,12 +7,13 @@
 
 #include "base/error.h"
 #include "path/media_params.h"
+#include "path/tables.h"
+#include "path_tables.h"
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
 #include "scene/picture.h"
 #include "scene/sidedness.h"
-#include "split_sum_table.h"
 #include "view/view_params.h"
 
 namespace peelray {
@@ -97,9 +98,10 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     }
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
     upload_media(commands);
-    environment = upload(device, commands, "environment map", env.texels);
-    split_sum = Buffer(device, "split sum", sizeof kSplitSum);
-    commands.upload(split_sum, std::span<const float>(kSplitSum[0], sizeof kSplitSum / sizeof(float)));
+    static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
+    lookups = Buffer(device, "tables and environment map", sizeof kTables + env.texels.size() * sizeof(glm::vec4));
+    commands.upload(lookups, std::span<const float>(kTables[0], sizeof kTables / sizeof(float)));
+    commands.upload(lookups, std::span<const glm::vec4>(env.texels), sizeof kTables);
     env_size_ = {env.width, env.height};
     env_levels_ = env.levels;
     sun_cosine_ = env.sun_cosine;
@@ -165,7 +167,7 @@ void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) 
 uint64_t GpuScene::bytes() const {
     uint64_t sum = instances.bytes() + base_colors.bytes() + deformer_.bytes() + generators_.bytes();
     for (const Buffer* buffer : {&triangles.positions, &triangles.triangles, &normals, &triangle_ids, &triangle_objects,
-                                 &lights, &environment, &split_sum, &draw_table, &media_ranks})
+                                 &lights, &lookups, &draw_table, &media_ranks})
         sum += buffer->bytes();
     return sum;
 }

@@ -29,8 +29,8 @@ class GpuScene {
     TriangleBuffers triangles;  ///< in the spaces of their bodies
     BaseColorBuffers base_colors;
     Buffer normals, triangle_ids, triangle_objects;
-    Buffer lights, environment;
-    Buffer split_sum;                  ///< the table of path/split_sum.h
+    Buffer lights;
+    Buffer lookups;                    ///< the tables of path/tables.h, then the environment map
     bool has_glass = false;            ///< some triangle lets light through
     bool splits = false;               ///< some reflects along two directions, or reflects and refracts
     bool has_blended = false;          ///< some covers a part of what is behind it

@@ -25,7 +25,7 @@ ObjectTable::ObjectTable(const Scene& scene, const Geometry& geometry) {
             if (m.unlit) continue;
             s.metallic |= m.metallic > float(MOSTLY_METAL);
             s.smoothest = std::min(s.smoothest, smoothest[last]);
-            s.roughest = std::max({s.roughest, m.roughness, m.clearcoat > 0 ? m.coat_roughness : 0});
+            s.roughest = std::max(s.roughest, most_roughness(m));
         }
         objects_.push_back(s);
     }

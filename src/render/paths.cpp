@@ -13,7 +13,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
     const bool camera = p.level == 0 && !layered;  // which makes its rays itself
     const std::vector<Binding> bindings =
         surface_bindings(scene, f.view.target.frame,
-                         {{"environment", scene.environment},
+                         {{"lookups", scene.lookups},
                           Binding::if_used("rays", camera ? nullptr : &level.rays),
                           Binding::if_used("states", camera ? nullptr : &level.states),
                           Binding::if_used("hits", camera ? nullptr : &level.hits),
@@ -29,7 +29,6 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           {"shadow_light", queues.lights().light},
                           {"visibility", f.view.target.visibility},
                           {"draws", scene.draw_table},
-                          {"split_sum", scene.split_sum},
                           Binding::if_used("media_walls", level.walls),
                           Binding::if_used("media_ranks", scene.media_ranks),
                           Binding::if_used("next_media", next.media),
@@ -62,6 +61,7 @@ std::vector<Binding> surfaces_of(const FrameState& f) {
     std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
     surfaces.push_back({"normals", f.scene.normals});
     surfaces.push_back({"frame", f.view.target.frame});
+    surfaces.push_back({"lookups", f.scene.lookups});
     surfaces.push_back(Binding::if_used("media_ranks", f.scene.media_ranks));
     return if_used(surfaces);
 }

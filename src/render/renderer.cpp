@@ -106,6 +106,7 @@ struct Renderer::Impl {
     void prepare_view();
     void prepare_maps();
     void prepare_queues();
+    void look_back();
     FrameMeter render_frame(const Progress& progress);
     void describe_tracer();
     void render_maps(FrameMeter& meter, const Progress& progress);
@@ -186,7 +187,8 @@ void Renderer::Impl::prepare_view() {
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = f.bands.row_pixels();
-    frame.effects = f.tracer->traces() || f.maps ? effects_of(settings) : 0;
+    frame.effects = (f.tracer->traces() || f.maps ? effects_of(settings) : 0) |
+                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u);
     frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.bounces = settings.bounces;
     frame.last_level = f.last_level;
@@ -205,6 +207,13 @@ void Renderer::Impl::prepare_queues() {
     f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.settings.bounces + 1,
                       f.scene.splits, f.lights_per_hit(), f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
+}
+
+/// For Aovs::motion.
+void Renderer::Impl::look_back() {
+    const PictureSettings& s = f.settings;
+    const View view = make_view(s.camera_before, float(s.width) / float(s.height), box.lower, box.upper);
+    aovs.motion().look_back(f, source, s.moment_before ? *s.moment_before : moment, moment, assembly, view);
 }
 
 /// The stages are those of docs/frame.md.
@@ -350,6 +359,7 @@ RenderResult Renderer::render(const RenderSettings& settings, const Progress& pr
     Device& device = r.f.device;
     const MemoryPart part(device, "frame");
     r.prepare(settings);
+    if (settings.aovs && settings.motion) r.look_back();
 
     RenderResult result;
     Measurement measurement(settings.repeat);

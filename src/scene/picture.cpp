@@ -22,6 +22,16 @@ float least_roughness(const Scene& scene, const Material& m) {
     return m.clearcoat > 0 ? std::min(own, least(m.coat_roughness, m.coat_roughness_texture)) : own;
 }
 
+float most_roughness(const Material& m) {
+    float own = m.roughness;
+    if (m.anisotropy > 0) {
+        const float across = std::max(own * own, float(MIRROR_ROUGHNESS * MIRROR_ROUGHNESS));
+        const float along = across + (1 - across) * m.anisotropy * m.anisotropy;
+        own = std::max(own, std::pow(along * across, 0.25f));
+    }
+    return m.clearcoat > 0 ? std::max(own, m.coat_roughness) : own;
+}
+
 bool is_reflective(const Scene& scene, uint32_t spp) {
     const auto reflects = [&](const Primitive& primitive) {
         const Material& m = scene.materials[primitive.material];

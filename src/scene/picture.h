@@ -15,6 +15,8 @@
 
 namespace peelray {
 
+struct Moment;
+
 /// What a picture is to look like, whoever makes it. Defaults are those of the command line.
 struct PictureSettings {
     uint32_t width = 1280, height = 1024;  ///< pixels
@@ -31,6 +33,11 @@ struct PictureSettings {
     Tonemap tonemap = Tonemap::neutral;
     bool aovs = false;       ///< also the auxiliary pictures
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
+    bool motion = false;     ///< and Aovs::motion, which else is 0
+    Camera camera_before;    ///< for `motion`: where the camera was at the moment before
+    /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
+    /// reference needs what is generated placed in it (Simulation).
+    const Moment* moment_before = nullptr;
 };
 
 /// Auxiliary pictures at the pixel centres (path/aov_table.h); width·height entries each, row 0 at the top.
@@ -85,8 +92,12 @@ inline bool lets_through(const Material& material) {
     return transmits(material) || material.blended;
 }
 
-/// The material's roughness where it is smoothest, its coat included.
+/// The material's roughness where it is smoothest, its coat included. Anisotropy only adds to it, and none where there
+/// are no tangents.
 float least_roughness(const Scene& scene, const Material& material);
+
+/// The same where it is roughest: anisotropic lobes count as the round ones that are as wide on the mean.
+float most_roughness(const Material& material);
 
 /// Is a part at least of an opaque surface's reflection followed by rays (docs/frame.md section 4)? `metallic`: more
 /// than half.

@@ -67,7 +67,8 @@ struct Material {
     MaterialTexture sheen_color_texture;  ///< sRGB
     MaterialTexture sheen_roughness_texture, iridescence_texture;  ///< one channel each
     MaterialTexture film_thickness_texture;                        ///< one channel: 0 the least, 1 the most thickness
-    /// Red and green: the direction along which the lobe is stretched, in tangent space; blue times `anisotropy`.
+    /// Red and green: the direction along which the lobe is stretched, in tangent space; blue times `anisotropy`. None:
+    /// its uv_set still says which coordinates tangents follow.
     MaterialTexture anisotropy_texture;
     MaterialTexture diffuse_transmission_texture;        ///< one channel
     MaterialTexture diffuse_transmission_color_texture;  ///< sRGB
@@ -151,8 +152,9 @@ struct Primitive {
     std::vector<glm::vec3> normals;                ///< unit length, same count as positions
     std::vector<glm::vec2> uvs;                    ///< the first set of texture coordinates
     std::vector<std::vector<glm::vec2>> more_uvs;  ///< sets 1, 2, …, each empty or per vertex
-    /// Unit tangents of the normal texture (x, y, z), and the side of the bitangent: w · cross(normal, tangent) points
-    /// to the image's first row. w = 0: none is known, the normal stays as it is. See make_tangents().
+    /// Unit tangents (x, y, z) for the normal texture and the direction of anisotropy, and the side of the bitangent: w
+    /// · cross(normal, tangent) points to the image's first row. w = 0: none is known, the normal stays as it is. See
+    /// make_tangents().
     std::vector<glm::vec4> tangents;
     std::vector<glm::vec4> colors;     ///< linear vertex colour that multiplies the base colour
     std::vector<JointWeights> joints;  ///< one per vertex; empty: no skin moves it

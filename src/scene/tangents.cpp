@@ -250,17 +250,30 @@ void make_tangents(Primitive& p, const std::vector<glm::vec2>& coordinates) {
     p.tangents = std::move(tangents);
 }
 
+bool needs_tangents(const Material& material) {
+    return material.normal_texture || material.coat_normal_texture || material.anisotropy > 0;
+}
+
+const MaterialTexture& tangent_texture(const Material& material) {
+    if (material.normal_texture) return material.normal_texture;
+    return material.coat_normal_texture ? material.coat_normal_texture : material.anisotropy_texture;
+}
+
+std::vector<glm::vec2> tangent_coordinates(const Material& material, const Primitive& p) {
+    const MaterialTexture& texture = tangent_texture(material);
+    std::vector<glm::vec2> coordinates;
+    if (texture.uv_set <= p.more_uvs.size()) coordinates = texture.uv_set == 0 ? p.uvs : p.more_uvs[texture.uv_set - 1];
+    for (glm::vec2& uv : coordinates) uv = texture.place(uv);
+    return coordinates;
+}
+
 void complete_tangents(Scene& scene) {
     for (Mesh& mesh : scene.meshes)
         for (Primitive& p : mesh.primitives) {
             const Material& m = scene.materials[p.material];
-            const MaterialTexture& normal = m.normal_texture ? m.normal_texture : m.coat_normal_texture;
-            if (!normal || !p.tangents.empty() || p.triangles.empty()) continue;
-            std::vector<glm::vec2> coordinates;
-            if (normal.uv_set <= p.more_uvs.size())
-                coordinates = normal.uv_set == 0 ? p.uvs : p.more_uvs[normal.uv_set - 1];
+            if (!needs_tangents(m) || !p.tangents.empty() || p.triangles.empty()) continue;
+            std::vector<glm::vec2> coordinates = tangent_coordinates(m, p);
             coordinates.resize(p.positions.size(), glm::vec2(0));
-            for (glm::vec2& uv : coordinates) uv = normal.place(uv);
             make_tangents(p, coordinates);
         }
 }

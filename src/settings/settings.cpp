@@ -87,7 +87,7 @@ SettingList sequence_settings(SequenceArguments& a) {
     add_setting(list, a.fps,
                 {.name = "fps",
                  .group = group,
-                 .help = "frames per second",
+                 .help = "frames per second; of --aov motion, which looks back by one frame, also for one picture",
                  .form = "F",
                  .preset = "30",
                  .limits = {.least = 0.001,

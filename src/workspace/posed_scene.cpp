@@ -103,6 +103,13 @@ void PosedScene::move_to(double seconds) {
     camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
 }
 
+PosedScene::Glimpse PosedScene::glimpse(double seconds, bool simulate) {
+    Moment moment = moment_of(*scene_, animation_, seconds);
+    if (simulate) glimpsed_.place(*scene_, moment);
+    const Camera camera = choose_camera(settings_, *scene_, moment.cameras, framing_);
+    return {std::move(moment), camera};
+}
+
 void PosedScene::frame_animation(const Scene& scene) {
     const auto visit = [&](Counted counted, const PointVisitor& add) { visit_reach(scene, animation_, counted, add); };
     framing_ = framing_of(settings_, visit);

@@ -46,6 +46,14 @@ class PosedScene {
     /// animation the scene stays at rest.
     void move_to(double seconds);
 
+    /// Another moment of the animation, and the camera then; it frames what the camera of this moment does. The scene
+    /// stays where it is. `simulate`: what is generated is placed in it, for who reads it on the CPU.
+    struct Glimpse {
+        Moment moment;
+        Camera camera;
+    };
+    Glimpse glimpse(double seconds, bool simulate);
+
     /// For a renderer that goes from moment to moment: divided at the beginning of the animation, since the moment of a
     /// picture must not shape its cubes.
     Assembly assembly() const;
@@ -63,6 +71,7 @@ class PosedScene {
     Moment moment_;
     std::optional<double> time_;
     Simulation simulation_;
+    Simulation glimpsed_;     ///< of glimpse(): in a sequence it goes from moment to moment as well
     bool simulated_ = false;  ///< the moment has been
     std::optional<Geometry> geometry_;
     Framing framing_;       ///< of the camera that shows all of it

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "motion/animation.h"
 #include "render/gpu_scene.h"
 #include "scene/sidedness.h"
 #include "workspace/culled_view.h"
@@ -49,6 +50,8 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
     if (shot.time) scene_.move_to(*shot.time);
     settings.camera = turned(scene_.camera(), shot.turn);
     settings.bounds = scene_.bounds();
+    const std::optional<PosedScene::Glimpse> before = look_back(settings, shot);
+    settings.moment_before = before ? &before->moment : nullptr;
     const auto report = [&](double share) {
         check_interrupt();
         if (progress) progress(share);
@@ -63,6 +66,15 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
     if (!crowded.empty() && !std::exchange(noted_.crowded, true)) note(notes_, crowded);
     note_culled(settings, made.picture);
     return in_world(std::move(made));
+}
+
+std::optional<PosedScene::Glimpse> Workspace::look_back(RenderSettings& settings, const Shot& shot) {
+    std::optional<PosedScene::Glimpse> before;
+    if (!settings.aovs || !settings.motion) return before;
+    if (scene_.time() && shot.fps > 0)
+        before = scene_.glimpse(moment_before(*scene_.time(), shot.fps), settings.tracer == Tracer::reference);
+    settings.camera_before = turned(before ? before->camera : scene_.camera(), shot.turn_before);
+    return before;
 }
 
 /// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at

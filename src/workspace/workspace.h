@@ -29,6 +29,10 @@ struct MadePicture {
 struct Shot {
     std::optional<double> time;  ///< of the animation, if there is one, seconds; none: where the scene is
     double turn = 0;             ///< how far the camera goes around its look point, see turned()
+    /// For Aovs::motion, which tells where all was a frame before: how many frames the animation has in a second, 0:
+    /// it stands still; and `turn` of that frame.
+    double fps = 30;
+    double turn_before = 0;
 };
 
 /// Opens the device when a tracer first needs one and keeps it, and what is on it, from picture to picture.
@@ -62,6 +66,8 @@ class Workspace {
   private:
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
+    /// The moment before, if anything but the camera may have moved since, and in the settings the camera then.
+    std::optional<PosedScene::Glimpse> look_back(RenderSettings& settings, const Shot& shot);
     MadePicture in_world(MadePicture made) const;
     void note_cubes(const RenderStats& stats);
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);

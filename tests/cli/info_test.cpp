@@ -38,15 +38,15 @@ TEST_F(InfoCommand, EverythingAGltfHolds) {
           {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1.55}}}}}}};
     gltf["meshes"][0]["name"] = "pane";
     gltf["meshes"][0]["primitives"][0]["material"] = 0;
-    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_sheen"};
+    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_xmp_json_ld"};
     put("square.bin", square_bytes());
     put("square.gltf", gltf.dump());
     const Outcome run = this->run({"info", in("square.gltf")});
     EXPECT_EQ(run.status, 0) << run.err;
     expect_says(run.out, {"triangles 2 (0 without area)", "bounds -1 -1 2 to 1 1 2", "pane: 2 triangles", "amber:",
                           "transmission 1", "1.55", "0 front row: eye 0 0 0, vertical field of view 60.0 degrees",
-                          "extensions used KHR_materials_ior, KHR_materials_sheen, KHR_materials_transmission",
-                          "extensions without effect KHR_materials_sheen"});
+                          "extensions used KHR_materials_ior, KHR_materials_transmission, KHR_xmp_json_ld",
+                          "extensions without effect KHR_xmp_json_ld"});
 }
 
 TEST_F(InfoCommand, Variants) {
@@ -72,6 +72,26 @@ TEST_F(InfoCommand, ClearCoat) {
     EXPECT_EQ(run.status, 0) << run.err;
     expect_says(run.out, {"coat texture 0", "coat roughness texture 0", "coat normal texture 0",
                           "clear coat 0.5 of roughness 0.25"});
+}
+
+TEST_F(InfoCommand, SheenFilmsAnisotropyDispersionAndDiffuseTransmission) {
+    auto gltf = square_gltf();
+    gltf["materials"] = nlohmann::json::parse(R"([{"extensions": {
+        "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 0], "sheenRoughnessFactor": 0.75},
+        "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.75},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.25, "anisotropyRotation": 0.785398},
+        "KHR_materials_dispersion": {"dispersion": 0.36},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5,
+            "diffuseTransmissionColorFactor": [1, 0.5, 0.25]}}},
+        {"name": "plain"}])");
+    put("square.bin", square_bytes());
+    put("square.gltf", gltf.dump());
+    const Outcome run = this->run({"info", in("square.gltf")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    expect_says(run.out, {"sheen 0.5 0.25 0 of roughness 0.75", "iridescence 0.5 by a film of index 1.75, 400 nm",
+                          "anisotropy 0.25 turned by 45 degrees", "dispersion 0.36",
+                          "diffuse transmission 0.5 of colour 1 0.5 0.25",
+                          "plain: colour 1 1 1, metallic 1, roughness 1, front only"});
 }
 
 TEST_F(InfoCommand, MasksAndBlending) {

@@ -69,13 +69,15 @@ TEST_F(RenderCommand, Formats) {
 }
 
 TEST_F(RenderCommand, AuxiliaryPictures) {
-    expect_done(
-        render(in("cube.obj"), {"--aov", "all", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0"}),
-        {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+    expect_done(render(in("cube.obj"), {"--aov", "all", "--eye", "0.5,0.5,3", "--look", "0.5,0.5,0"}),
+                {"a.albedo.exr", "a.depth.exr", "a.instance.exr", "a.material.exr", "a.motion.exr", "a.normal.exr",
+                 "a.png", "a.position.exr", "a.triangle.exr"});
     // The pixel right of and above the centre sees the near face at a distance of 2.
     EXPECT_NEAR(read_hdr(out("a.depth.exr")).at(32, 23).x, 2, 0.01);
     EXPECT_EQ(read_hdr(out("a.material.exr")).at(32, 23).x, 0);
     EXPECT_LE(read_hdr(out("a.triangle.exr")).at(33, 22).x, 1);
+    EXPECT_EQ(read_hdr(out("a.instance.exr")).at(32, 23).x, 0);
+    EXPECT_EQ(channels_of(out("a.motion.exr")), std::vector<float>(2 * 64 * 48, 0)) << "nothing moves";
 }
 
 TEST_F(RenderCommand, WhatThePaperSetsUpForMirrorRays) {
@@ -409,10 +411,10 @@ TEST_F(RenderCommand, AToleranceBelowThePixelsIsNoted) {
 }
 
 TEST_F(RenderCommand, ValidationLayersAreSilent) {
-    expect_done(
-        render("builtin:glass",
-               {"--validate", "--aov", "all", "--spp", "2", "--effects", "reflection,refraction,shadow,ambient"}),
-        {"a.albedo.exr", "a.depth.exr", "a.material.exr", "a.normal.exr", "a.png", "a.position.exr", "a.triangle.exr"});
+    expect_done(render("builtin:glass", {"--validate", "--aov", "all", "--spp", "2", "--effects",
+                                         "reflection,refraction,shadow,ambient"}),
+                {"a.albedo.exr", "a.depth.exr", "a.instance.exr", "a.material.exr", "a.motion.exr", "a.normal.exr",
+                 "a.png", "a.position.exr", "a.triangle.exr"});
 }
 
 TEST_F(RenderCommand, TrianglesWithoutAreaAreCounted) {

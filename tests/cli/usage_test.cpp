@@ -259,7 +259,7 @@ TEST_F(Usage, HelpMentionsEveryOption) {
           "--tonemap",  "--bounces",  "--spp",        "--effects",       "--time",         "--animation",
           "--frames",   "--fps",      "--aov",        "--turntable",     "--shard",        "--resume",
           "--material", "--floor",    "--repeat",     "builtin:teapots", "builtin:blob:N", "1280x1024",
-          "--counters", "cost_steps", "--visibility", "--frame-moment"}},
+          "--counters", "cost_steps", "--visibility", "--frame-moment",  "--exr-layers"}},
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat", "--counters"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},

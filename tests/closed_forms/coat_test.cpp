@@ -14,17 +14,12 @@ Material coated(Material m, float share, float roughness) {
     return m;
 }
 
-Camera oblique(double cosine) {
-    const double sine = std::sqrt(1 - cosine * cosine);
-    return orthographic({float(4 * sine), 0, float(4 * cosine)}, {0, 0, 0}, 0.3f);
-}
-
 TEST_F(CoatTest, MirrorsBySchlick) {
     for (const float share : {1.f, 0.4f})
         for (const double cosine : {1.0, 0.6, 0.2}) {
             Stage stage;
             stage.add(texture_square(), coated(lambert({0, 0, 0}), share, 0));
-            const Camera camera = oblique(cosine);
+            const Camera camera = slanted(cosine);
             tally(render(stage, white, settings_for(camera, 16)), camera, 1e-4, [&](const ViewRay&) {
                 return glm::dvec3(double(share) * schlick(0.04, 1, cosine));
             }).expect(0, 256);
@@ -38,7 +33,7 @@ TEST_F(CoatTest, TakesItsShareFromBelow) {
         Material lamp = lambert({0, 0, 0});
         lamp.emissive = {2, 1, 0.5f};
         stage.add(texture_square(), coated(lamp, 0.8f, 0));
-        const Camera camera = oblique(cosine);
+        const Camera camera = slanted(cosine);
         tally(render(stage, black, settings_for(camera, 16)), camera, 1e-4, [&](const ViewRay&) {
             return (1 - double(0.8f) * schlick(0.04, 1, cosine)) * glm::dvec3(2, 1, 0.5);
         }).expect(0, 256);

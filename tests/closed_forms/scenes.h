@@ -234,6 +234,10 @@ inline Camera orthographic(const glm::vec3& eye, const glm::vec3& look, float he
     c.orthographic_height = height;
     return c;
 }
+/// Sees the middle of texture_square() at this cosine to its normal, from the right.
+inline Camera slanted(double cosine) {
+    return orthographic({float(4 * std::sqrt(1 - cosine * cosine)), 0, float(4 * cosine)}, {0, 0, 0}, 0.3f);
+}
 /// Sees `height` of the world around the origin from above; the picture's top is -z, its right +x.
 inline Camera from_above(float height) {
     return orthographic({0, 8, 0}, {0, 0, 0}, height, {0, 0, -1});
@@ -344,6 +348,11 @@ struct Tally {
 
 inline glm::dvec3 radiance_at(const Picture& picture, uint32_t x, uint32_t y) {
     return glm::dvec3(picture.radiance[size_t(y) * picture.width + x]);
+}
+inline glm::dvec3 mean_radiance(const Picture& picture) {
+    glm::dvec3 sum(0);
+    for (const glm::vec4& p : picture.radiance) sum += glm::dvec3(p);
+    return sum / double(picture.radiance.size());
 }
 inline bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
     return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) <= tolerance;  // false for NaN

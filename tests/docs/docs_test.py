@@ -2,6 +2,7 @@
 """docs_test.py [PROGRAM]: checks README.md, docs/*.md and findings/*.md, and what sources say about them.
 
 README.md has at most 1,300 words; prose is wrapped at 120 columns; relative links lead to files and headings that exist;
+its table of glTF extensions, and that of docs/scenes.md, list those that the loader supports and no others;
 documents and files that are named exist, with the sections that are named; every option of PROGRAM that is named is in its
 help.
 The faults of a small folder made here are found, too: a check that finds nothing would pass any document.
@@ -133,12 +134,29 @@ def path_faults(root):
     return faults
 
 
+def rows_of(text, header):
+    """The cells of the rows of the table whose first line has `header`; none where there is no such table."""
+    lines = text.splitlines()
+    start = next((i for i, line in enumerate(lines) if line.startswith("|") and header in line), len(lines))
+    for line in lines[start + 2:]:
+        if not line.startswith("|"):
+            return
+        yield line.strip("| ").split("|")
+
+
 def extension_faults(root):
-    """glTF extensions that the loader supports and docs/scenes.md does not name."""
+    """glTF extensions that the loader supports and a table of them lacks, in README.md and docs/scenes.md, and those that
+    are there and not supported."""
     checks = (root / "src/loaders/gltf_check.cpp").read_text()
     names = re.findall(r'"((?:KHR|EXT)_\w+)"', checks[checks.index("supported_extensions"):].split(";")[0])
-    text = (root / "docs/scenes.md").read_text()
-    return [f"scenes.md: {name} is read and not named" for name in names if not re.search(rf"\b{name}\b", text)]
+    faults = []
+    for document, header, column in (("README.md", "extensions of glTF", 1), ("docs/scenes.md", "| extension |", 0)):
+        cells = [row[column] for row in rows_of((root / document).read_text(), header)]
+        listed = re.findall(r"\b(?:KHR|EXT)_\w+", " ".join(cells))
+        name = pathlib.PurePath(document).name
+        faults += [f"{name}: {each} is read and not in the table" for each in names if each not in listed]
+        faults += [f"{name}: {each} is in the table and not read" for each in listed if each not in names]
+    return faults
 
 
 def help_of_program():
@@ -270,9 +288,21 @@ class Faults(unittest.TestCase):
         (self.root / "src/loaders").mkdir()
         self.write("src/loaders/gltf_check.cpp",
                    'auto supported_extensions = {"KHR_a", "EXT_b",\n  "KHR_materials"};\nMember x("KHR_c");\n')
-        self.write("docs/scenes.md", "# A\n\nEXT_b, KHR_materials_x\n")
+        readme = "# A\n\n| | extensions of glTF |\n|---|---|\n| KHR_c | KHR_a, EXT_b |\n| more | {} |\n\nKHR_d\n"
+        scenes = "# A\n\n| extension | read |\n|---|---|\n| KHR_a, EXT_b | as KHR_c |\n{}\n| KHR_d | |\n"
+        self.write("README.md", readme.format("KHR_materials"))
+        self.write("docs/scenes.md", scenes.format("| KHR_materials | |\n"))
+        self.assertEqual(extension_faults(self.root), [])
+        self.write("README.md", readme.format("KHR_materials_x, EXT_y"))
+        self.write("docs/scenes.md", scenes.format("| EXT_y | |\n"))
         self.assertEqual(extension_faults(self.root),
-                         ["scenes.md: KHR_a is read and not named", "scenes.md: KHR_materials is read and not named"])
+                         ["README.md: KHR_materials is read and not in the table",
+                          "README.md: KHR_materials_x is in the table and not read",
+                          "README.md: EXT_y is in the table and not read",
+                          "scenes.md: KHR_materials is read and not in the table",
+                          "scenes.md: EXT_y is in the table and not read"])
+        self.write("README.md", "# A\n\nKHR_a, EXT_b, KHR_materials\n")
+        self.assertEqual(len(extension_faults(self.root)), 3 + 2)
 
     def test_paths(self):
         self.write("docs/a.md", "# A\n\n`src/a.*`, `a.cpp`, `src/b.cpp`, `b.comp`\n\n    `src/code.cpp`\n")

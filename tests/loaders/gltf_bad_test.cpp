@@ -49,7 +49,11 @@ TEST(GltfBad, WrongTypesEverywhere) {
     gltf["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}])");
     gltf["materials"] =
         json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1]}, "emissiveFactor": [0, 0, 0],
-        "extensions": {"KHR_materials_volume": {"attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]}}}])");
+        "extensions": {"KHR_materials_volume": {"attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]},
+                       "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.6, 0.7]},
+                       "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMaximum": 500},
+                       "KHR_materials_anisotropy": {"anisotropyStrength": 1, "anisotropyRotation": 1},
+                       "KHR_materials_dispersion": {"dispersion": 1}}}])");
     gltf["extensions"] = json::parse(R"({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}})");
     gltf["nodes"][0] = {{"mesh", 0},
                         {"camera", 0},
@@ -252,7 +256,7 @@ TEST(GltfBad, Hierarchy) {
 
 TEST(GltfBad, RequiredExtensions) {
     const TempFolder folder;
-    for (const char* name : {"KHR_texture_basisu", "KHR_materials_sheen", "ACME_magic"}) {
+    for (const char* name : {"KHR_texture_basisu", "KHR_materials_sss", "ACME_magic"}) {
         json gltf = square();
         gltf["extensionsRequired"] = {"KHR_materials_ior", name};
         EXPECT_MENTIONS(error_of(folder, gltf), name);

@@ -175,8 +175,8 @@ TEST(GltfMaterial, Materials) {
         R"([{"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.6},
         "emissiveFactor": [1, 0.5, 0], "alphaMode": "BLEND", "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.7},
         "KHR_materials_ior": {"ior": 1.4}, "KHR_materials_volume": {"thicknessFactor": 2, "attenuationDistance": 3, "attenuationColor": [0.5, 0.6, 0.7]},
-        "KHR_materials_emissive_strength": {"emissiveStrength": 10}, "KHR_materials_unlit": {}, "KHR_materials_sheen": {}}}])");
-    gltf["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_sheen"};
+        "KHR_materials_emissive_strength": {"emissiveStrength": 10}, "KHR_materials_unlit": {}, "ACME_materials_magic": {}}}])");
+    gltf["extensionsUsed"] = {"KHR_materials_transmission", "ACME_materials_magic"};
     primitive(gltf)["material"] = 0;
     const Scene scene = load(folder, gltf);
     const Material& m = scene.materials.at(0);
@@ -191,7 +191,7 @@ TEST(GltfMaterial, Materials) {
     EXPECT_FLOAT_EQ(m.attenuation_distance, 3);
     expect_near(m.attenuation_color, {0.5f, 0.6f, 0.7f});
     EXPECT_TRUE(m.unlit);
-    EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"KHR_materials_sheen"});
+    EXPECT_EQ(scene.extensions_unsupported, std::vector<std::string>{"ACME_materials_magic"});
     EXPECT_EQ(scene.extensions_used.size(), 2u);
     EXPECT_TRUE(m.blended);  // unlit: it bounds no volume
 }

@@ -203,6 +203,11 @@ TEST(Mtl, PhysicallyBasedAndEmissiveMaps) {
     // Without Ke the texture counts as it is; where its image is missing, so does Ke.
     EXPECT_EQ(material_of(load_with(folder, "newmtl m\nmap_Ke red green.png\n")).emissive, glm::vec3(1));
     EXPECT_EQ(material_of(load_with(folder, "newmtl m\nmap_Ke gone.png\n")).emissive, glm::vec3(0));
+    const Material coated = material_of(load_with(folder, "newmtl m\nPc 0.75\nPcr 0.25\n"));
+    EXPECT_EQ(coated.clearcoat, 0.75f);
+    EXPECT_EQ(coated.coat_roughness, 0.25f);
+    EXPECT_EQ(material_of(load_with(folder, "newmtl m\nPc 3\nPcr -1\n")).clearcoat, 1);
+    EXPECT_EQ(m.clearcoat, 0);
     // Normals in tangent space are read, heights are not.
     const Scene normals = load_with(folder, "newmtl m\nnorm -bm 0.25 -clamp on red green.png\n");
     EXPECT_TRUE(normals.notes.empty()) << normals.notes[0];
@@ -215,7 +220,7 @@ TEST(Mtl, PhysicallyBasedAndEmissiveMaps) {
     ASSERT_EQ(bump.notes.size(), 1u);
     EXPECT_MENTIONS(bump.notes[0], "2 bump maps (map_bump), which hold heights, ignored");
     for (const char* key : {"Ka 1 1 1", "map_Ks a.png", "map_Ns a.png", "disp a.png", "decal a.png",
-                            "refl -type sphere a.png", "Ps 0.5", "Pc 1", "aniso 1", "sharpness 60", "map_aat on"}) {
+                            "refl -type sphere a.png", "Ps 0.5", "aniso 1", "sharpness 60", "map_aat on"}) {
         const Scene noted = load_with(folder, "newmtl m\n" + std::string(key) + "\n");
         ASSERT_EQ(noted.notes.size(), 1u) << key;
         EXPECT_MENTIONS(noted.notes[0], "\"" + std::string(key).substr(0, std::string(key).find(' ')) + "\"");

@@ -174,6 +174,15 @@ TEST(Animate, CamerasAndLightsFollowTheirNodes) {
     EXPECT_EQ(moment.lights[0].position, glm::vec3(0, 0, 1.5f));
 }
 
+TEST(Animate, TheMomentBeforeIsThatOfTheFrameBefore) {
+    for (const double fps : {30.0, 24.0, 29.97, 1000.0})
+        for (const double frame : {1.0, 2.0, 31.0, 57.0, 1000.0, 99999.0})
+            EXPECT_EQ(moment_before(frame / fps, fps), (frame - 1) / fps) << frame << " at " << fps;
+    EXPECT_EQ(moment_before(0, 30), 0);
+    EXPECT_EQ(moment_before(0.01, 30), 0);
+    EXPECT_DOUBLE_EQ(moment_before(1.01, 10), 0.91);
+}
+
 TEST(Animate, UnknownNamesAreListed) {
     Scene scene = strip();
     const auto message = [&](const std::string& which) -> std::string {

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "reference/film.h"
+#include "reference/sheen.h"
+
 namespace peelray::optics {
 namespace {
 
@@ -83,9 +86,62 @@ TEST(Ggx, SamplesFollowTheVisibleNormals) {
         });
         double sum = 0;
         const int n = 20000;
-        for (int i = 0; i < n; i++) sum += sample_ggx(view, alpha, random_pair(7, uint32_t(i), Purpose::microfacet)).z;
+        for (int i = 0; i < n; i++)
+            sum += sample_ggx(view, glm::dvec2(alpha), random_pair(7, uint32_t(i), Purpose::microfacet)).z;
         EXPECT_NEAR(sum / n, expected, 2e-3) << alpha;
     }
+}
+
+TEST(Ggx, StretchedLobesAreLobes) {
+    const Lobe lobe({0, 0, 1}, glm::normalize(glm::dvec3(3, 1, 0)), {0.6, 0.2});
+    EXPECT_NEAR(hemisphere([&](const glm::dvec3& h) { return lobe.distribution(h) * h.z; }), 1, 2e-3);
+    const glm::dvec3 view = glm::normalize(glm::dvec3(0.7, -0.2, 0.5));
+    glm::dvec3 expected(0), sum(0);
+    for (int k = 0; k < 3; k++)
+        expected[k] = hemisphere([&](const glm::dvec3& h) {
+            return lobe.distribution(h) * lobe.masking(view) * std::max(0.0, glm::dot(view, h)) / view.z * h[k];
+        });
+    const int n = 20000;
+    for (int i = 0; i < n; i++) sum += lobe.sample(view, random_pair(7, uint32_t(i), Purpose::microfacet));
+    EXPECT_LT(glm::length(sum / double(n) - expected), 3e-3);
+    EXPECT_EQ(lobe.masking({0.6, 0, -0.8}), 0);
+}
+
+TEST(Ggx, RoundLobesAreTheOnesOfOneWidth) {
+    const glm::dvec3 n = glm::normalize(glm::dvec3(1, 2, -1)), d = glm::normalize(glm::dvec3(1, 1, 0.5));
+    const Lobe lobe(n, 0.3);
+    EXPECT_NEAR(lobe.masking(d), ggx_masking(glm::dot(n, d), 0.3), 1e-14);
+    EXPECT_NEAR(lobe.distribution(d), ggx_distribution(glm::dot(n, d), 0.3), 1e-12);
+}
+
+TEST(Film, WithoutThicknessOnlyTheBaseReflects) {
+    for (double cosine : {1.0, 0.6, 0.1}) {
+        const glm::dvec3 got = film::reflectance(cosine, 1.7, 0, {1.3, 1.5, 2});
+        EXPECT_NEAR(got.x, fresnel_dielectric(cosine, 1.3), 1e-12);
+        EXPECT_NEAR(got.y, fresnel_dielectric(cosine, 1.5), 1e-12);
+        EXPECT_NEAR(got.z, fresnel_dielectric(cosine, 2), 1e-12);
+    }
+}
+
+TEST(Film, OfTheBasesIndexItIsTheBase) {
+    EXPECT_NEAR(film::reflectance(0.5, 1.5, 300, glm::dvec3(1.5)).y, fresnel_dielectric(0.5, 1.5), 1e-12);
+}
+
+TEST(Film, IndexReflectsWhatItIsMadeFor) {
+    const glm::dvec3 f0(0, 0.04, 0.9), n = film::index_of(f0);
+    for (int k = 0; k < 3; k++) EXPECT_NEAR(fresnel_dielectric(1, n[k]), f0[k], 1e-12);
+    EXPECT_NEAR(fresnel_dielectric(1, film::index_of(glm::dvec3(1)).x), 0.9999, 1e-9);
+}
+
+TEST(Sheen, AlbedoIsTheLobesIntegral) {
+    // The mean of the lobe over directions of equal solid angle.
+    for (const double alpha : {0.0049, 0.04, 0.25, 1.0})
+        for (const double cosine : {0.9, 0.4, 0.15}) {
+            const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine);
+            const double integral = hemisphere(
+                [&](const glm::dvec3& l) { return sheen::lobe(alpha, glm::normalize(view + l).z, cosine, l.z); });
+            EXPECT_NEAR(sheen::albedo(alpha, cosine), integral, 2e-3) << alpha << ", " << cosine;
+        }
 }
 
 }  // namespace

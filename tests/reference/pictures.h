@@ -3,6 +3,7 @@
 
 #include <scenes.h>
 
+#include "motion/animation.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {
@@ -30,6 +31,15 @@ class PictureTest : public testing::Test {
             settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
         const Geometry geometry = flatten(stage.scene);
         return PathTracer(stage.scene, at_rest(stage.scene), geometry, environment).render(settings, {}, threads);
+    }
+    /// Of a moment of the scene's first animation, if it has any; with Aovs::motion since the moment `before`.
+    Picture render_at(const Scene& scene, double time, double before, RenderSettings settings) {
+        const std::string which = scene.animations.empty() ? "" : "0";
+        const Moment now = moment_of(scene, which, time), then = moment_of(scene, which, before);
+        settings.aovs = settings.motion = true;
+        settings.moment_before = &then;
+        const Geometry geometry = flatten(scene, now);
+        return PathTracer(scene, now, geometry, black).render(settings);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };

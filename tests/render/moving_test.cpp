@@ -121,6 +121,39 @@ TEST_F(MovingTest, AFrameIsTheSameAloneAndAfterOthers) {
         }
 }
 
+TEST_F(MovingTest, LookingBackChangesNothingElse) {
+    for (const char* name : {"", "builtin:waves:800", "builtin:particles:200"}) {
+        SCOPED_TRACE(name);
+        Scene scene = *name ? load_scene(name) : three_balls();
+        RenderSettings plain = small(scene.cameras.empty() ? kUsualView : scene.cameras[0]);
+        plain.aovs = true;
+        RenderSettings looking = plain;
+        looking.motion = true;
+        looking.camera_before = looking.camera;
+        const auto never = renderer_in(scene, "0", 0, sky), always = renderer_in(scene, "0", 0, sky);
+        // On, and back.
+        for (const double time : {0.4, 0.5, 0.2}) {
+            SCOPED_TRACE(time);
+            const Moment before = moment_of(scene, "0", time - 0.1);
+            looking.moment_before = &before;
+            const RenderResult one = at(*never, scene, "0", time, plain),
+                               other = at(*always, scene, "0", time, looking);
+            expect_identical(one, other);
+            EXPECT_EQ(one.stats.moved, other.stats.moved);
+            EXPECT_EQ(one.stats.rebuilt, other.stats.rebuilt);
+            EXPECT_EQ(one.stats.frame_bytes, other.stats.frame_bytes);
+            EXPECT_EQ(one.aovs.motion, std::vector<glm::vec2>(48 * 48, glm::vec2(0)));
+            EXPECT_GT(std::ranges::count_if(other.aovs.motion, [](const auto& v) { return glm::length(v) > 0.05f; }),
+                      20);
+            if (time > 0.2) continue;
+            const RenderResult again = always->render(looking);
+            expect_identical(one, again);
+            EXPECT_EQ(again.aovs.motion, other.aovs.motion);
+            EXPECT_EQ(renderer_in(scene, "0", time, sky)->render(looking).aovs.motion, other.aovs.motion);
+        }
+    }
+}
+
 TEST_F(MovingTest, OnlyWhatChangesItsShapeIsRebuilt) {
     Scene scene = three_balls();
     const auto renderer = renderer_in(scene, "0", 0, sky);

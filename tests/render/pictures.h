@@ -4,6 +4,7 @@
 #include <scenes.h>
 
 #include "../gpu/device_fixture.h"
+#include "motion/animation.h"
 #include "render/renderer.h"
 
 namespace peelray {
@@ -27,6 +28,15 @@ class PictureTest : public DeviceTest {
         const Moment rest = at_rest(stage.scene);
         return std::make_unique<Renderer>(device(), stage.scene, rest,
                                           assemble(stage.scene, rest, motion_of(stage.scene, "")), environment);
+    }
+    /// Of a moment of the scene's first animation, if it has any; with Aovs::motion since the moment `before`.
+    RenderResult render_at(const Scene& scene, double time, double before, RenderSettings settings) {
+        const std::string which = scene.animations.empty() ? "" : "0";
+        const Moment now = moment_of(scene, which, time), then = moment_of(scene, which, before);
+        settings.aovs = settings.motion = true;
+        settings.moment_before = &then;
+        const Assembly assembly = assemble(scene, moment_of(scene, which, 0), motion_of(scene, which));
+        return Renderer(device(), scene, now, assembly, black).render(settings);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };

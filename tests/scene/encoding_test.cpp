@@ -56,5 +56,21 @@ TEST(Reflective, ByMaterial) {
     EXPECT_FALSE(reflective(4));
 }
 
+TEST(Reflective, AnisotropyWidensTheRoughestLobe) {
+    Material material;
+    material.roughness = 0.5f;
+    EXPECT_EQ(most_roughness(material), 0.5f);
+    material.anisotropy = 0.5f;  // alpha is 0.25 across and 0.25 + 0.75 / 4 along
+    EXPECT_FLOAT_EQ(most_roughness(material), std::pow(0.25f * 0.4375f, 0.25f));
+    material.roughness = 0;
+    EXPECT_GT(most_roughness(material), float(MIRROR_ROUGHNESS));
+    material.roughness = 1;
+    EXPECT_EQ(most_roughness(material), 1);
+    EXPECT_EQ(least_roughness({}, material), 1);
+    material.clearcoat = 1;
+    EXPECT_EQ(most_roughness(material), 1);
+    EXPECT_EQ(least_roughness({}, material), 0);
+}
+
 }  // namespace
 }  // namespace peelray

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "made_pictures.h"
+#include "workspace/render_settings.h"
 
 namespace peelray {
 namespace {
@@ -69,6 +72,37 @@ TEST(Workspace, TheCameraGoesRound) {
     const MadePicture front = workspace.render(), side = workspace.render({.turn = 0.25});
     EXPECT_NE(front.picture.encoded, side.picture.encoded);
     expect_identical(workspace.render(), front);
+}
+
+TEST(Workspace, MotionIsWhatTheFrameBeforeShowsByEveryTracer) {
+    for (const char* scene : {"builtin:waves:200", "builtin:particles:1000"}) {
+        SCOPED_TRACE(scene);
+        std::vector<std::vector<glm::vec2>> motions;
+        std::vector<std::vector<float>> triangles;
+        for (const Tracer tracer : {Tracer::ldc, Tracer::none, Tracer::reference}) {
+            PictureArguments arguments = small(scene, tracer);
+            arguments.animation = "0";
+            Workspace workspace(arguments);
+            RenderSettings settings = render_settings(arguments);
+            settings.aovs = settings.motion = true;
+            workspace.render(settings, {.time = 0.8});
+            const Aovs aovs = workspace.render(settings, {.time = 0.6, .fps = 10}).picture.aovs;
+            motions.push_back(aovs.motion);
+            triangles.push_back(aovs.triangle);
+            for (const glm::vec2& v : workspace.render(settings, {.fps = 0}).picture.aovs.motion)
+                ASSERT_EQ(v, glm::vec2(0)) << "all stands still";
+            const auto round = workspace.render(settings, {.fps = 0, .turn_before = -0.01}).picture.aovs.motion;
+            EXPECT_GT(std::ranges::count_if(round, [](const auto& v) { return glm::length(v) > 0.05f; }), 50);
+        }
+        size_t moved = 0;
+        for (size_t i = 0; i < motions[0].size(); i++) {
+            EXPECT_EQ(motions[0][i], motions[1][i]);
+            if (triangles[0][i] != triangles[2][i]) continue;  // at an edge
+            EXPECT_LT(glm::length(motions[0][i] - motions[2][i]), 5e-3f) << i;
+            moved += glm::length(motions[0][i]) > 0.05f;
+        }
+        EXPECT_GT(moved, 10u);
+    }
 }
 
 TEST(Workspace, ToldOfProgressAndEndedByIt) {

@@ -1,5 +1,5 @@
 // The tabulated split sum and the fit of Fresnel's formula against quadrature that shares nothing with them.
-#include "split_sum_table.h"
+#include "path_tables.h"
 
 #include <scenes.h>
 
@@ -8,8 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
-#include "path/split_sum.h"
+#include "path/tables.h"
 #include "render/fresnel_fit.h"
 
 namespace peelray {
@@ -32,7 +33,7 @@ TEST(SplitSum, EntriesAreMeansOverMicrofacets) {
             for (size_t k = 0; k < 4; k++) {
                 const double want = ggx_mean(cosine_of(column), roughness_of(row),
                                              [&](double c) { return std::pow(1 - c, kExponents[k]); });
-                EXPECT_NEAR(kSplitSum[row * SPLIT_SUM_SIDE + column][k], want, 2e-3)
+                EXPECT_NEAR(kTables[TABLE_SPLIT_SUM + row * SPLIT_SUM_SIDE + column][k], want, 2e-3)
                     << "roughness " << roughness_of(row) << ", cosine " << cosine_of(column) << ", power " << k;
             }
 }
@@ -40,11 +41,11 @@ TEST(SplitSum, EntriesAreMeansOverMicrofacets) {
 TEST(SplitSum, WithoutRoughnessTheSurfaceIsItsOnlyMicrofacet) {
     for (int column = 0; column < SPLIT_SUM_SIDE; column++)
         for (size_t k = 0; k < 4; k++)
-            EXPECT_NEAR(kSplitSum[column][k], std::pow(1 - cosine_of(column), kExponents[k]), 1e-6);
+            EXPECT_NEAR(kTables[TABLE_SPLIT_SUM + column][k], std::pow(1 - cosine_of(column), kExponents[k]), 1e-6);
 }
 
 TEST(SplitSum, NothingReflectsMoreThanItGets) {
-    for (const auto& entry : kSplitSum) {
+    for (const auto& entry : std::span(kTables).first<SPLIT_SUM_SIDE * SPLIT_SUM_SIDE>()) {
         EXPECT_LE(entry[0], 1.0f);
         EXPECT_TRUE(entry[0] >= entry[1] && entry[1] >= entry[2] && entry[2] >= entry[3] && entry[3] >= 0);
     }

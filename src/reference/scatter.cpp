@@ -1,0 +1,219 @@
+// What a surface does with a ray: the branches that it sends out (docs/frame.md section 4).
+#include <algorithm>
+#include <cmath>
+
+#include "reference/optics.h"
+#include "reference/shader.h"
+
+namespace peelray {
+
+using namespace optics;
+
+namespace {
+
+/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
+double traced_part(double roughness, double metallic, uint32_t spp) {
+    if (spp > 1) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
+    const double x =
+        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
+    return 1 - x * x * (3 - 2 * x);
+}
+
+glm::dvec3 mirrored(const glm::dvec3& direction, const glm::dvec3& normal) {
+    return direction - 2 * glm::dot(direction, normal) * normal;
+}
+
+}  // namespace
+
+Lobe Shader::lobe_of(const Surface& s) {
+    const glm::dvec2 alphas = s.optics.alphas();
+    return s.optics.anisotropy > 0 ? Lobe(s.normal, s.along, alphas) : Lobe(s.normal, alphas.x);
+}
+
+/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
+glm::dvec3 Shader::half_vector(const Lobe& lobe, const glm::dvec3& view, uint32_t seed, Purpose purpose) const {
+    if (context_.settings.spp <= 1 || lobe.alpha.x < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return lobe.n;
+    return lobe.sample(view, random_pair(seed, sample_, purpose));
+}
+
+/// That of the surface below the coat. One sample looks where a stretched lobe's light comes from on the whole: the
+/// normal turns towards the viewer, across the lobe (KHR_materials_anisotropy).
+glm::dvec3 Shader::microfacet(const Surface& s, const Lobe& lobe, const Path& path) const {
+    const Optics& m = s.optics;
+    const glm::dvec3 view = -path.direction;
+    if (m.anisotropy == 0 || context_.settings.spp > 1) return half_vector(lobe, view, path.seed, Purpose::microfacet);
+    const glm::dvec3 across = view - glm::dot(view, lobe.b) * lobe.b;
+    const glm::dvec3 turned = glm::dot(across, across) > 0 ? glm::normalize(across) : s.normal;
+    return glm::normalize(glm::mix(turned, s.normal, std::pow(1 - m.anisotropy * (1 - m.roughness), 4)));
+}
+
+/// Where light goes on behind a surface that transmits; nowhere at total internal reflection. A thin wall bends light
+/// back to where it came from: a rough one blurs what is behind as it blurs what it mirrors.
+std::optional<glm::dvec3> Shader::refracted(const Surface& s, const Path& path, const Meeting& meeting,
+                                            const glm::dvec3& half) const {
+    const bool rough = s.optics.lobe_roughness() >= MIRROR_ROUGHNESS;
+    if (!s.optics.thin) return refract_ray(path.direction, half, relative_index(meeting, s, path.channel));
+    if (!rough || context_.settings.spp <= 1) return path.direction;
+    return mirrored(mirrored(path.direction, half), s.normal);
+}
+
+/// By a microfacet, or by all of them where one sample stands for the lobe.
+Shader::Shares Shader::shares(const Surface& s, const Lobe& lobe, const Path& path, const Meeting& meeting,
+                              const glm::dvec3& half) const {
+    const Optics& m = s.optics;
+    const double n_v = std::clamp(-glm::dot(path.direction, s.normal), 0.0, 1.0),
+                 v_h = std::clamp(-glm::dot(path.direction, half), 0.0, 1.0);
+    const Parts fresnel = reflectance_at(meeting, s, v_h, path.channel);
+    const glm::dvec3 passed = 1.0 - fresnel.dielectric;
+    if (m.lobe_roughness() < MIRROR_ROUGHNESS) return {fresnel.of(m), passed};
+    const bool sampled = context_.settings.spp > 1;
+    if (!m.transmits() && !sampled) return {mean_reflectance(s, n_v).of(m), passed};
+    const double kept = sampled ? lobe.masking(mirrored(path.direction, half)) : context_.albedos.at(s, n_v).masking();
+    if (!m.transmits()) return {(fresnel * compensation(s, n_v)).of(m) * kept, passed};
+    if (!compensates(m)) return {fresnel.of(m) * kept, passed};
+    if (!sampled) return {glm::mix(fresnel.dielectric, mean_reflectance(s, n_v).metal, m.metallic), passed};
+    const auto onward = refracted(s, path, meeting, half);
+    const Shares glass = rough_glass(fresnel.dielectric, kept, onward ? lobe.masking(-*onward) : 0);
+    const glm::dvec3 metal = fresnel.metal * compensation(s, n_v).metal * kept;
+    return {glm::mix(glass.reflected, metal, m.metallic), glass.refracted};
+}
+
+/// Does light that is refracted here come apart?
+bool Shader::disperses(const Surface& s, const Path& path, const Meeting& meeting) const {
+    if (path.channel != Channel::all || !s.optics.transmits() || s.optics.thin || s.optics.alpha < 1) return false;
+    const auto spreads = [&](uint32_t medium) {
+        return medium != Media::air && context_.surfaces.optics(medium).spread > 0;
+    };
+    return meeting.wall ? spreads(meeting.from) || spreads(meeting.to) : s.optics.spread > 0;
+}
+
+/// Each channel's ray takes its own way from the same microfacet; what is reflected totally has gone with the rest.
+void Shader::split(const Path& path, const Meeting& meeting, const Surface& s, const glm::dvec3& half,
+                   Scattered& out) const {
+    for (const Channel channel : {Channel::red, Channel::green, Channel::blue}) {
+        const double eta = relative_index(meeting, s, channel);
+        const auto direction = refract_ray(path.direction, half, eta);
+        Branch part = out.refraction;
+        part.weight = glm::dvec3(0);
+        if (direction) part.weight[int(channel)] = out.refraction.weight[int(channel)];
+        part.direction = direction.value_or(path.direction);
+        part.cone = path.cone.refracted(s.curvature, eta);
+        part.channel = channel;
+        out.split.push_back(part);
+    }
+}
+
+/// All branches of a surface, and what it sends by itself.
+Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meeting& meeting) const {
+    const Optics& m = s.optics;
+    const PictureSettings& settings = context_.settings;
+    Scattered out;
+    if (m.unlit) {
+        out.radiance = m.base_color;
+        if (m.alpha < 1) pass_beside(s, path, meeting, out);
+        return out;
+    }
+    const double roughness = m.lobe_roughness();
+    const bool transmits = m.transmits(), mirror = roughness < MIRROR_ROUGHNESS;
+    const Lobe lobe = lobe_of(s);
+    const glm::dvec3 h = microfacet(s, lobe, path);
+    const Shares share = shares(s, lobe, path, meeting, h);
+    const double below = below_sheen(s, -glm::dot(path.direction, s.normal));
+
+    Branch& reflection = out.reflection;
+    reflection.weight = share.reflected * below;
+    reflection.direction = above_surface(mirrored(path.direction, h), s.geometric);
+    reflection.media = meeting.before;
+    reflection.cone = path.cone.reflected(s.curvature);
+    reflection.sees_sun = mirror && path.sees_sun;
+    reflection.traced = is_traced(reflection, path);
+    reflection.blur = settings.spp > 1 ? 0 : roughness;
+
+    out.radiance = m.emissive;
+    if (!transmits) out.radiance += fade(reflection, roughness, m.metallic);
+    const auto direction = transmits ? refracted(s, path, meeting, h) : std::nullopt;
+    const bool comes_apart = disperses(s, path, meeting);
+    if (direction || comes_apart) {
+        Branch& refraction = out.refraction;
+        refraction.weight = share.refracted * m.tint() * below;
+        refraction.direction = direction.value_or(path.direction);
+        if (m.thin && !mirror && settings.spp > 1)
+            refraction.direction = above_surface(refraction.direction, -s.geometric);
+        refraction.media = meeting.behind;
+        refraction.cone =
+            m.thin ? path.cone : path.cone.refracted(s.curvature, relative_index(meeting, s, path.channel));
+        refraction.sees_sun = mirror && path.sees_sun;
+        refraction.mirrors = false;
+        refraction.traced = is_traced(refraction, path);
+        refraction.weight *= meeting.beside;
+    }
+    if (m.clearcoat > 0) add_coat(s, path, meeting, out);
+    if (m.alpha < 1) pass_beside(s, path, meeting, out);
+    if (comes_apart) split(path, meeting, s, h, out);
+    return out;
+}
+
+/// What the untraced part of a wide lobe sees, at once; the branch keeps the rest.
+glm::dvec3 Shader::fade(Branch& branch, double roughness, double metallic) const {
+    const double part = traced_part(roughness, metallic, context_.settings.spp);
+    if (part == 1) return glm::dvec3(0);
+    const glm::dvec3 seen = branch.weight * (1 - part) * context_.surroundings.radiance(branch.direction, roughness);
+    branch.weight *= part;
+    branch.traced = branch.traced && part > 0;
+    return seen;
+}
+
+/// A clear coat takes its share of the light and lets the rest through, both ways at once (KHR_materials_clearcoat).
+/// What it mirrors is the second branch of an opaque surface; glass and blended surfaces mirror it with their own.
+void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting, Scattered& out) const {
+    const Optics& m = s.optics;
+    const glm::dvec3 view = -path.direction;
+    const double share = context_.albedos.coat(s, glm::dot(view, s.coat_normal));
+    out.radiance *= 1 - share;
+    out.reflection.weight *= 1 - share;
+    out.refraction.weight *= 1 - share;
+    const bool has_second = m.transmits() || m.alpha < 1;
+    if (has_second && largest(out.reflection.weight) > 0) {
+        out.reflection.weight += share;
+        out.reflection.traced = is_traced(out.reflection, path);
+        return;
+    }
+    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS, sampled = !mirror && context_.settings.spp > 1;
+    const Lobe lobe(s.coat_normal, m.coat_roughness * m.coat_roughness);
+    const glm::dvec3 h = half_vector(lobe, view, path.seed, Purpose::coat);
+    const glm::dvec3 reflected = mirrored(path.direction, h);
+    Branch coat;
+    coat.weight = glm::dvec3(share);
+    if (sampled) {
+        coat.weight = m.clearcoat * lobe.masking(reflected) *
+                      fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, std::clamp(glm::dot(view, h), 0.0, 1.0));
+    }
+    coat.direction = above_surface(reflected, s.geometric);
+    coat.media = meeting.before;
+    coat.cone = path.cone.reflected(s.curvature);
+    coat.sees_sun = mirror && path.sees_sun;
+    coat.traced = is_traced(coat, path);
+    out.radiance += fade(coat, m.coat_roughness, 0);
+    coat.blur = context_.settings.spp > 1 ? 0 : m.coat_roughness;
+    (has_second ? out.reflection : out.refraction) = coat;
+}
+
+/// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin
+/// glass sends its light the same way.
+void Shader::pass_beside(const Surface& s, const Path& path, const Meeting& meeting, Scattered& out) const {
+    const double alpha = s.optics.alpha;
+    out.radiance *= alpha;
+    out.reflection.weight *= alpha;
+    Branch on;
+    on.weight = alpha * out.refraction.weight + (1 - alpha);
+    on.direction = path.direction;
+    on.media = meeting.behind;
+    on.cone = path.cone;
+    on.passes = true;
+    on.sees_sun = path.sees_sun;
+    on.mirrors = false;
+    on.traced = is_traced(on, path);
+    out.refraction = on;
+}
+
+}  // namespace peelray

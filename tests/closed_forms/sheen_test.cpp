@@ -1,0 +1,148 @@
+// The sheen of cloth (KHR_materials_sheen): light that it takes is missing below, and nothing else.
+#include <pictures.h>
+
+namespace peelray {
+namespace {
+
+class SheenTest : public PictureTest {
+  protected:
+    glm::dvec3 seen(const Stage& stage, const Environment& environment, double cosine) {
+        return mean_radiance(render(stage, environment, settings_for(slanted(cosine), 4)));
+    }
+    Stage square(const Material& m) {
+        Stage stage;
+        stage.add(texture_square(), m);
+        return stage;
+    }
+};
+
+Material with_sheen(Material m, const glm::vec3& color, float roughness) {
+    m.sheen_color = color;
+    m.sheen_roughness = roughness;
+    return m;
+}
+
+/// Estevez and Kulla's lobe without its cosine, by the rows of their table.
+double fibres(double roughness, const glm::dvec3& view, const glm::dvec3& to_light) {
+    const double alpha = std::pow(std::max(roughness, 0.07), 2), t = std::pow(1 - alpha, 2);
+    const auto mixed = [&](double smooth, double rough) { return rough + (smooth - rough) * t; };
+    const double a = mixed(25.3245, 21.5473), b = mixed(3.32435, 3.82987), c = mixed(0.16801, 0.19823),
+                 d = mixed(-1.27393, -1.97760), e = mixed(-4.85967, -4.32054);
+    const auto l = [&](double x) { return a / (1 + b * std::pow(x, c)) + d * x + e; };
+    const auto lambda = [&](double x) { return std::exp(x < 0.5 ? l(x) : 2 * l(0.5) - l(1 - x)); };
+    const glm::dvec3 half = glm::normalize(view + to_light);
+    const double sine = std::hypot(half.x, half.y);
+    return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) / (2 * kPi) /
+           ((1 + lambda(view.z) + lambda(to_light.z)) * 4 * view.z * to_light.z);
+}
+
+glm::dvec3 upwards(double cosine) {
+    return {std::sqrt(1 - cosine * cosine), 0, cosine};
+}
+
+/// Of light from everywhere: by the angle to the normal and around it.
+double fibre_albedo(double roughness, double cosine) {
+    const int rings = 300, sectors = 60;
+    double sum = 0;
+    for (int i = 0; i < rings; i++) {
+        const double angle = (i + 0.5) / rings * kPi / 2;
+        for (int k = 0; k < sectors; k++) {
+            const double around = (k + 0.5) / sectors * kPi;
+            const glm::dvec3 l(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle));
+            sum += fibres(roughness, upwards(cosine), l) * l.z * std::sin(angle);
+        }
+    }
+    return std::min(1.0, sum * kPi * kPi / (rings * sectors));
+}
+
+TEST_F(SheenTest, OnBlackItSendsItsAlbedo) {
+    for (const double roughness : {0.0, 0.2, 0.5, 1.0})
+        for (const double cosine : {1.0, 0.5, 0.16}) {
+            const Material m = with_sheen(lambert({0, 0, 0}), {1, 0.5f, 0}, float(roughness));
+            const double albedo = fibre_albedo(roughness, cosine);
+            const glm::dvec3 got = seen(square(m), white, cosine);
+            EXPECT_TRUE(near(got, albedo * glm::dvec3(1, 0.5, 0), 6e-3))
+                << "roughness " << roughness << ", cosine " << cosine << ": " << text(got) << ", expected " << albedo;
+        }
+}
+
+TEST_F(SheenTest, NothingIsLostOrMadeUp) {
+    // On white cloth, on a mirror and on rough glass; a coloured one takes from all colours what it takes of its own.
+    for (const float roughness : {0.1f, 1.f})
+        for (const double cosine : {0.8, 0.16}) {
+            SCOPED_TRACE(fmt::format("roughness {}, cosine {}", roughness, cosine));
+            Material glass = thin_glass();
+            glass.roughness = 0.4f;
+            for (const Material& m : {lambert({1, 1, 1}), plane_mirror(), glass}) {
+                const glm::dvec3 got = seen(square(with_sheen(m, {1, 1, 1}, roughness)), white, cosine);
+                EXPECT_TRUE(near(got, glm::dvec3(1), 2e-3)) << text(got);
+            }
+            const double albedo = fibre_albedo(roughness, cosine);
+            const glm::dvec3 got =
+                seen(square(with_sheen(lambert({1, 1, 1}), {0.8f, 0.4f, 0}, roughness)), white, cosine);
+            EXPECT_TRUE(near(got, 1.0 - albedo * glm::dvec3(0, 0.4, 0.8), 6e-3)) << text(got);
+        }
+}
+
+TEST_F(SheenTest, LampsAreReflectedByTheFibres) {
+    for (const double roughness : {0.1, 0.5, 1.0})
+        for (const double cosine : {0.9, 0.3}) {
+            const glm::dvec3 view = upwards(cosine), to_sun = glm::normalize(glm::dvec3(0.9, 0.6, 0.5));
+            const glm::dvec3 color(0.9, 0.5, 0.2);
+            const double left = 1 - 0.9 * std::max(fibre_albedo(roughness, cosine), fibre_albedo(roughness, to_sun.z));
+            const glm::dvec3 want = 2 * to_sun.z * (left * 0.5 / kPi + color * fibres(roughness, view, to_sun));
+            Stage stage = square(with_sheen(lambert(glm::vec3(0.5f)), glm::vec3(color), float(roughness)));
+            stage.sun(-to_sun, glm::vec3(2));
+            const glm::dvec3 got = seen(stage, black, cosine);
+            EXPECT_TRUE(near(got, want, 4e-3)) << "roughness " << roughness << ", cosine " << cosine << ": "
+                                               << text(got) << ", expected " << text(want);
+        }
+}
+
+TEST_F(SheenTest, EmissionShinesThrough) {
+    const Stage stage = square(with_sheen(emitting({3, 2, 1}), {1, 1, 1}, 0.5f));
+    EXPECT_TRUE(near(seen(stage, black, 0.2), {3, 2, 1}, 1e-4));
+}
+
+TEST_F(SheenTest, LiesBelowTheCoat) {
+    Material m = with_sheen(lambert({0, 0, 0}), {1, 1, 1}, 0.5f);
+    m.clearcoat = 1;
+    const double cosine = 0.3, coat = schlick(0.04, 1, cosine);
+    EXPECT_NEAR(seen(square(m), white, cosine).x, coat + (1 - coat) * fibre_albedo(0.5, cosine), 4e-3);
+}
+
+TEST_F(SheenTest, AmbientRaysDecideAboutItsSky) {
+    // A black wall all along one side hides half of the sky, of which the sheen is taken to see as much as Lambert.
+    Stage stage = square(with_sheen(lambert({0, 0, 0}), {1, 1, 1}, 0.5f));
+    stage.add(parallelogram({0, -99, 0}, {0, 198, 0}, {0, 0, 99}), unlit({0, 0, 0}));
+    RenderSettings settings = settings_for(orthographic({0.5f, 0, 4}, {0.5f, 0, 0}, 0.01f), 4);
+    settings.spp = 64;
+    settings.ambient = true;
+    const RenderResult picture = render(stage, white, settings);
+    EXPECT_NEAR(mean_radiance(picture).x, fibre_albedo(0.5, 1) / 2, 0.01);
+    EXPECT_EQ(picture.rays.ambient, 16u * 64u);
+}
+
+TEST_F(SheenTest, TexturesScaleColourAndRoughness) {
+    Stage stage;
+    Material m = with_sheen(lambert({0, 0, 0}), {1, 1, 1}, 1);
+    m.sheen_color_texture = 0;
+    m.sheen_roughness_texture = 0;
+    m.sheen_roughness_texture.channel = 3;
+    stage.scene.textures = {two_texels({255, 255, 0, 102}, {188, 255, 255, 204})};  // 188: 0.5029 of sRGB
+    stage.add(texture_square(), m);
+    const Camera camera = orthographic({4, 0, 2}, {0, 0, 0}, 0.5f);
+    const double cosine = 1 / std::sqrt(5), wide = fibre_albedo(0.8, cosine), narrow = fibre_albedo(0.4, cosine);
+    const double half = std::pow((188 / 255.0 + 0.055) / 1.055, 2.4);
+    // Seen from the right: the picture's left is the square's.
+    tally(render(stage, white, settings_for(camera, 16)), camera, 6e-3,
+          [&](const ViewRay& ray) -> std::optional<glm::dvec3> {
+              const double x = ray.at_plane(2, 0).x;
+              if (std::abs(x) < 0.01 || std::abs(x) > 0.99) return {};
+              return x < 0 ? narrow * glm::dvec3(1, 1, 0) : wide * glm::dvec3(half, 1, 1);
+          })
+        .expect(0, 150);
+}
+
+}  // namespace
+}  // namespace peelray
