@@ -26,11 +26,11 @@ build: packages
 
 test: test-packages
 	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
-	@cmake --build --preset release --parallel $(JOBS)
+	@cmake --build --preset release --parallel $(JOBS) --target tests
 	$(CTEST) --test-dir build/release -LE long
 	@echo '== the CPU-side tests once more, under the address and undefined-behaviour sanitizers'
 	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
-	@cmake --build --preset sanitize --parallel $(JOBS)
+	@cmake --build --preset sanitize --parallel $(JOBS) --target tests
 	$(CTEST) --test-dir build/sanitize -L cpu
 
 test-long: test-packages

@@ -9,7 +9,7 @@ namespace peelray {
 namespace {
 
 constexpr uint32_t kLargestFace = 512, kUsualFace = 128, kSmallestFace = 16, kMostSamples = 4;
-constexpr uint64_t kMostBytes = 512ull << 20, kTexelBytes = 8;
+constexpr uint64_t kMostCubeBytes = 512ull << 20, kTexelBytes = 8;
 
 uint32_t level_size(uint32_t face, uint32_t level) {
     return std::max(face >> level, PROBE_SMALLEST_FACE);
@@ -49,7 +49,7 @@ void CubeMaps::choose_probes(const PictureSettings& settings, uint32_t pixels) {
         return glm::length(objects_.objects()[i].upper - objects_.objects()[i].lower);
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](uint32_t a, uint32_t b) { return size(a) > size(b); });
-    const uint64_t room = std::min<uint64_t>(device_.limits().maxStorageBufferRange, kMostBytes);
+    const uint64_t room = std::min<uint64_t>(device_.limits().maxStorageBufferRange, kMostCubeBytes);
     for (face_ = std::clamp(std::bit_ceil(pixels), kUsualFace, kLargestFace);
          !place_probes(chosen, room) && face_ > kSmallestFace;)
         face_ /= 2;

@@ -9,7 +9,7 @@ namespace peelray {
 namespace {
 
 constexpr uint32_t kSingle = 2048, kFace = 1024, kSmallest = 32;
-constexpr uint64_t kMostBytes = 512ull << 20;
+constexpr uint64_t kMostShadowBytes = 512ull << 20;
 constexpr float kWidest = 1.75f;  // tangent of the half angle beyond which six faces serve better than one map
 
 void set_view(Frame& frame, const glm::vec3& eye, const glm::vec3& forward, float half) {
@@ -85,7 +85,7 @@ void ShadowMaps::prepare(Commands& commands, const std::vector<GpuLight>& lights
     std::vector<glm::vec3> box;  // opposite corners first and last
     for (int i = 0; i < 8; i++)
         box.push_back({i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z});
-    const uint64_t room = std::min<uint64_t>(device_.limits().maxStorageBufferRange, kMostBytes);
+    const uint64_t room = std::min<uint64_t>(device_.limits().maxStorageBufferRange, kMostShadowBytes);
     std::vector<Frame> frames;
     uint64_t texels = 0;
     for (uint32_t shift = 0;; shift++) {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "scene/pi.h"
 
 namespace peelray {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Appends the coarser levels down to a height of 4 rows: box filters of the level before.
 void add_levels(Environment& environment) {

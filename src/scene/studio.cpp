@@ -2,15 +2,13 @@
 // materials' own.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.h"
 #include "scene/environment.h"
+#include "scene/pi.h"
 
 namespace peelray {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 float smooth(float from, float to, float x) {
     const float t = std::clamp((x - from) / (to - from), 0.f, 1.f);

@@ -8,7 +8,7 @@ namespace {
 
 using BlendTest = PictureTest;
 
-const Camera kFront = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
+const Camera kSheets = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
 
 Material blended(Material m, float alpha) {
     m.alpha = alpha;
@@ -32,7 +32,7 @@ TEST_F(BlendTest, TheNearerCoversTheFarther) {
         stage.add(texture_square(0), blended(unlit(kGreen), 0.5f));
         if (!near_first) stage.add(texture_square(1), blended(unlit(kRed), 0.25f));
         const glm::dvec3 want = 0.25 * kRed + 0.75 * (0.5 * kGreen + 0.5 * kBack);
-        tally(render(stage, white, settings_for(kFront, 32)), kFront, 1e-4, everywhere(want)).expect(0, 1024);
+        tally(render(stage, white, settings_for(kSheets, 32)), kSheets, 1e-4, everywhere(want)).expect(0, 1024);
     }
 }
 
@@ -41,7 +41,7 @@ TEST_F(BlendTest, LightOnASheetIsItsShare) {
     stage.add(texture_square(0), blended(lambert({0.6f, 0.6f, 0.6f}), 0.4f));
     stage.add(texture_square(-1), unlit(kBack));
     stage.sun({0, 0, -1}, glm::vec3(2));
-    tally(render(stage, black, settings_for(kFront, 32)), kFront, 1e-4, everywhere(0.4 * 0.6 * 2 / kPi + 0.6 * kBack))
+    tally(render(stage, black, settings_for(kSheets, 32)), kSheets, 1e-4, everywhere(0.4 * 0.6 * 2 / kPi + 0.6 * kBack))
         .expect(0, 1024);
 }
 
@@ -78,22 +78,22 @@ TEST_F(BlendTest, PassingIsNoBounce) {
     for (int i = 0; i < 6; i++) stage.add(texture_square(0.1f * float(i)), blended(unlit({0, 0, 0}), 0.1f));
     Primitive mirror = texture_square(-1);
     stage.add(mirror, plane_mirror());
-    RenderSettings settings = settings_for(kFront, 16);
+    RenderSettings settings = settings_for(kSheets, 16);
     settings.bounces = 1;
     // After eight sheets the rest counts as bounces: two of the way back are passed, then the sky is seen.
-    tally(render(stage, white, settings), kFront, 1e-3, everywhere(glm::dvec3(std::pow(0.9, 9)))).expect(0, 256);
+    tally(render(stage, white, settings), kSheets, 1e-3, everywhere(glm::dvec3(std::pow(0.9, 9)))).expect(0, 256);
     settings.bounces = 8;
-    tally(render(stage, white, settings), kFront, 1e-3, everywhere(glm::dvec3(std::pow(0.9, 12)))).expect(0, 256);
+    tally(render(stage, white, settings), kSheets, 1e-3, everywhere(glm::dvec3(std::pow(0.9, 12)))).expect(0, 256);
 }
 
 TEST_F(BlendTest, WithoutBouncesSheetsAreSeenThrough) {
     Stage stage;
     stage.add(texture_square(0), blended(unlit(kRed), 0.5f));
     stage.add(texture_square(-1), unlit(kBack));
-    RenderSettings settings = settings_for(kFront, 16);
+    RenderSettings settings = settings_for(kSheets, 16);
     settings.bounces = 0;
     settings.shadow = false;
-    tally(render(stage, white, settings), kFront, 1e-4, everywhere(0.5 * kRed + 0.5 * kBack)).expect(0, 256);
+    tally(render(stage, white, settings), kSheets, 1e-4, everywhere(0.5 * kRed + 0.5 * kBack)).expect(0, 256);
 }
 
 TEST_F(BlendTest, AlphaIsFactorTimesTextureTimesVertex) {
@@ -105,7 +105,7 @@ TEST_F(BlendTest, AlphaIsFactorTimesTextureTimesVertex) {
     quad.colors.assign(4, glm::vec4(1, 0.5f, 1, 0.5f));
     stage.add(quad, m);
     stage.add(texture_square(-1), unlit(kBack));
-    tally(render(stage, black, settings_for(kFront, 32)), kFront, 1e-4,
+    tally(render(stage, black, settings_for(kSheets, 32)), kSheets, 1e-4,
           [](const ViewRay& ray) -> std::optional<glm::dvec3> {
               if (std::abs(ray.origin.x) < 1e-3) return {};
               const double alpha = 0.8 * 0.5 * (ray.origin.x < 0 ? 128 : 51) / 255;
@@ -120,7 +120,7 @@ TEST_F(BlendTest, ThinGlassIsThereByItsAlpha) {
     glass.base_color = {0.5f, 1, 1};
     stage.add(texture_square(0), glass);
     stage.add(texture_square(-1), unlit(kBack));
-    tally(render(stage, black, settings_for(kFront, 16)), kFront, 1e-4, everywhere(kBack * glm::dvec3(0.75, 1, 1)))
+    tally(render(stage, black, settings_for(kSheets, 16)), kSheets, 1e-4, everywhere(kBack * glm::dvec3(0.75, 1, 1)))
         .expect(0, 256);
 }
 
@@ -130,7 +130,7 @@ TEST_F(BlendTest, OnlyTheUnlitShareSkipsTheToneCurve) {
     Material lamp = lambert({0, 0, 0});
     lamp.emissive = glm::vec3(3, 2, 1);
     stage.add(texture_square(-1), lamp);
-    const RenderSettings settings = settings_for(kFront, 16);
+    const RenderSettings settings = settings_for(kSheets, 16);
     const uint32_t want = encode(0.5 * glm::dvec3(3, 2, 1), settings.exposure, settings.tonemap, 0.5 * kRed);
     const RenderResult picture = render(stage, black, settings);
     for (const uint32_t got : picture.encoded)
@@ -142,7 +142,7 @@ TEST_F(BlendTest, CutRaysAreThoseThatBouncesWouldFollow) {
     Stage stage;
     stage.add(texture_square(0), blended(unlit(kRed), 0.5f));
     stage.add(texture_square(-1), plane_mirror());
-    RenderSettings settings = settings_for(kFront, 16);
+    RenderSettings settings = settings_for(kSheets, 16);
     settings.bounces = 0;
     const RenderResult none = render(stage, white, settings);
     EXPECT_EQ(none.rays.refraction, 256u);
@@ -154,7 +154,7 @@ TEST_F(BlendTest, CutRaysAreThoseThatBouncesWouldFollow) {
     EXPECT_EQ(one.rays.reflection, 256u);
     EXPECT_EQ(one.rays.cut_reflection, 0u);
     settings.bounces = 16;  // no level is left for more
-    tally(render(stage, white, settings), kFront, 1e-4, everywhere(0.75 * kRed + 0.25)).expect(0, 256);
+    tally(render(stage, white, settings), kSheets, 1e-4, everywhere(0.75 * kRed + 0.25)).expect(0, 256);
 }
 
 }  // namespace

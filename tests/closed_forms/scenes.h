@@ -14,6 +14,7 @@
 #include "builtin/shapes.h"
 #include "scene/environment.h"
 #include "scene/picture.h"
+#include "statistics/ggx_mean.h"
 
 namespace peelray {
 
@@ -162,6 +163,11 @@ inline Primitive disc(const glm::vec3& centre, float radius, uint32_t corners = 
     return faces({rim});
 }
 
+/// Whether a point of a horizontal plane is above, in or below a disc.
+inline bool in_disc(const glm::dvec3& p, const glm::dvec3& centre, double radius) {
+    return glm::length(glm::dvec2(p.x - centre.x, p.z - centre.z)) < radius;
+}
+
 /// The square |x|, |z| ≤ half at height y, facing up.
 inline Primitive ground(float half, float y = 0) {
     return parallelogram({-half, y, half}, {2 * half, 0, 0}, {0, 0, -2 * half});
@@ -296,27 +302,6 @@ inline double fresnel(double cosine, double from, double to) {
 /// Schlick's reflectance, from f0 at normal incidence to f90 at grazing angles.
 inline double schlick(double f0, double f90, double cosine) {
     return f0 + (f90 - f0) * std::pow(1 - cosine, 5);
-}
-
-/// Mean of value(v·h) over what the view of a GGX surface reflects: D·G1(v)·G1(l)·(v·h)/(n·v) over the microfacets h,
-/// by quadrature in rings tan² = alpha² u / (1 - u) of the same share of D·(n·h), which crowd at u = 1, where steep
-/// microfacets reflect what grazes. With a reflectance as the value: the share of white light that is reflected.
-inline double ggx_mean(double cosine, double roughness, const std::function<double(double)>& value) {
-    const double alpha = roughness * roughness, sine = std::sqrt(1 - cosine * cosine);
-    const auto lambda = [&](double c) { return (std::sqrt(1 + alpha * alpha * (1 / (c * c) - 1)) - 1) / 2; };
-    const int rings = 240, sectors = 120;
-    double sum = 0;
-    for (int i = 0; i < rings; i++) {
-        const double t = (i + 0.5) / rings, u = 1 - t * t, c = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u));
-        for (int k = 0; k < sectors; k++) {
-            const double v_h = sine * std::sqrt(1 - c * c) * std::cos((k + 0.5) / sectors * kPi) + cosine * c;
-            const double n_l = 2 * v_h * c - cosine;
-            if (v_h > 0 && n_l > 0)
-                sum +=
-                    2 * t * value(std::min(v_h, 1.0)) * v_h / (c * cosine * (1 + lambda(cosine)) * (1 + lambda(n_l)));
-        }
-    }
-    return sum / (rings * sectors);
 }
 
 // --- Comparison ---

@@ -26,10 +26,6 @@ Tally tally_outline(const RenderResult& picture, const Camera& camera, const Sha
     });
 }
 
-bool in_disc(const glm::dvec3& p, const glm::dvec3& centre, double radius) {
-    return glm::length(glm::dvec2(p.x - centre.x, p.z - centre.z)) < radius;
-}
-
 TEST_F(ShadowTest, DiscUnderTheSun) {
     const glm::dvec3 travel = glm::normalize(glm::dvec3(1, -1.2, 0.5)), centre(-0.6, 1, -0.3);
     Stage stage;

@@ -25,10 +25,6 @@ class ShadowMapTest : public PictureTest {
     }
 };
 
-bool in_disc(const glm::dvec3& p, const glm::dvec3& centre, double radius) {
-    return glm::length(glm::dvec2(p.x - centre.x, p.z - centre.z)) < radius;
-}
-
 TEST_F(ShadowMapTest, DiscUnderTheSun) {
     const glm::dvec3 travel = glm::normalize(glm::dvec3(1, -1.2, 0.5)), centre(-0.6, 1, -0.3),
                      shift = travel / -travel.y;

@@ -39,7 +39,7 @@ std::vector<glm::vec3> corners(const glm::vec3& lower, const glm::vec3& upper) {
     return points;
 }
 
-std::vector<glm::vec3> ball(const glm::vec3& centre, float radius) {
+std::vector<glm::vec3> points_of_ball(const glm::vec3& centre, float radius) {
     std::vector<glm::vec3> points;
     for (int i = 0; i < 2000; i++) {
         const float y = 1 - (float(i) + 0.5f) / 1000, phi = float(i) * 2.39996f, r = std::sqrt(1 - y * y);
@@ -68,8 +68,8 @@ TEST(Framing, PointsFillThePicture) {
         expect_filled(lens, corners({0, 0, 0}, {1, 80, 1}));      // tall
         expect_filled(lens, corners({-30, 0, -20}, {9, 0, 14}));  // flat
         expect_filled(lens, corners({90, 0, -3}, {99, 1, 3}));    // off the centre
-        expect_filled(lens, ball({3, -2, 7}, 0.01f));
-        std::vector<glm::vec3> uneven = ball({0, 0, 0}, 1);
+        expect_filled(lens, points_of_ball({3, -2, 7}, 0.01f));
+        std::vector<glm::vec3> uneven = points_of_ball({0, 0, 0}, 1);
         uneven.emplace_back(6, 0, 0);
         expect_filled(lens, uneven);
     }
@@ -79,7 +79,7 @@ TEST(Framing, ABallIsAsLargeAsItCanBeInEveryLens) {
     // A sphere around a box would leave a ball a half of the picture.
     for (const float degrees : {5.f, 20.f, 40.f, 120.f})
         for (const glm::vec3& up : {glm::vec3(0, 1, 0), glm::vec3(0.4f, 1, 0.2f), glm::vec3(0, 0, 3)})
-            expect_filled({glm::radians(degrees), 1, up}, ball({0, 0, 0}, 1));
+            expect_filled({glm::radians(degrees), 1, up}, points_of_ball({0, 0, 0}, 1));
 }
 
 TEST(Framing, LooksFromAboveAndTheRight) {
