@@ -49,7 +49,8 @@ bool is_reflective(const Scene& scene, uint32_t spp) {
 
 glm::vec2 sample_position(uint32_t index) {
     const double x = 0.5 + index * 0.7548776662466927, y = 0.5 + index * 0.5698402909980532;
-    return {float(x - std::floor(x)), float(y - std::floor(y))};
+    constexpr float below_one = 0x1.fffffep-1f;  // rounding reaches 1 once in some 16 million
+    return {std::min(float(x - std::floor(x)), below_one), std::min(float(y - std::floor(y)), below_one)};
 }
 
 Camera turned(const Camera& camera, double turn) {
