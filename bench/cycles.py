@@ -6,8 +6,9 @@
 Both programs see the same file from the same place under the same environment: by default a soft one that is made here, so that few
 samples do. Cycles renders twice, with diffuse light between surfaces and without it, as the program has none. Prints the table of
 docs/cycles.md. Writes for each file OUT/NAME.cycles.exr and NAME.direct.exr, both by Cycles, and the report NAME.html of `peelray
-compare`, and with ImageMagick (`montage`) OUT/sheet.png: the program; Cycles, FLIP; Cycles without diffuse bounces, FLIP. Needs
-Blender 3.4 (Debian: `apt-get install --no-install-recommends blender python3-numpy`).
+compare`, and with ImageMagick (`montage`) OUT/sheet.png: the program; Cycles, FLIP; Cycles without diffuse bounces, FLIP; and
+OUT/small.webp, which is docs/cycles.webp. Needs Blender 3.4 (Debian: `apt-get install --no-install-recommends blender
+python3-numpy`).
 """
 import argparse
 import base64
@@ -89,8 +90,8 @@ def compare(a, path, view, stem, pictures):
     """Renders with the program. FLIP of each picture against that, and where the report's pictures lie: ours, then each and its map."""
     eye, look, fov = view
     run([a.program, "compare", path, "-o", stem + ".html", "--json", stem + ".json", "--size", f"{a.size[0]}x{a.size[1]}",
-         "--spp", str(a.spp), "--bounces", str(a.bounces), "--env", a.env, "--eye", vector(eye), "--look", vector(look), "--fov", str(fov),
-         "--effects", "reflection,refraction,shadow,ambient", "--exposure", str(a.exposure), "--tracers", "ldc"] +
+         "--spp", str(a.spp), "--bounces", str(a.bounces), "--env", a.env, "--eye", vector(eye), "--look", vector(look),
+         "--fov", str(fov), "--effects", "reflection,refraction,shadow,ambient", "--exposure", str(a.exposure), "--tracers", "ldc"] +
         [word for picture in pictures for word in ("--picture", picture)])
     with open(stem + ".json", encoding="utf-8") as file:
         flip = [picture["difference"]["flip"] for picture in json.load(file)["pictures"] if "difference" in picture]
@@ -104,12 +105,11 @@ def compare(a, path, view, stem, pictures):
     return flip, [files["ldc"]] + [files[prefix + name] for name in names for prefix in ("", "FLIP: ")]
 
 
-def sheet(path, rows, size):
-    tiles = []
-    for name, pictures in rows:
-        for label, picture in zip((name, "Cycles", "FLIP", "Cycles, no diffuse bounces", "FLIP"), pictures):
-            tiles += ["-label", label, picture]
-    run(["montage", "-geometry", f"{size[0]}x{size[1]}+2+2", "-tile", "5x", "-background", "white"] + tiles + [path])
+def sheet(path, rows, labels, across, size):
+    """One row of pictures for each file, as many as there are labels; `across` files side by side."""
+    tiles = [word for name, pictures in rows for label, picture in zip(labels, pictures) for word in ("-label", label or name, picture)]
+    run(["montage", "-geometry", f"{size[0]}x{size[1]}+2+2", "-tile", f"{across * len(labels)}x", "-background", "white", "-depth", "8",
+         "-quality", "90"] + tiles + [path])
 
 
 def main():
@@ -149,7 +149,8 @@ def main():
     if not shutil.which("montage"):
         print("no sheet: ImageMagick's montage is missing", file=sys.stderr)
     elif rows:
-        sheet(os.path.join(a.out, "sheet.png"), rows, a.size)
+        sheet(os.path.join(a.out, "sheet.png"), rows, ("", "Cycles", "FLIP", "Cycles, no diffuse bounces", "FLIP"), 1, a.size)
+        sheet(os.path.join(a.out, "small.webp"), rows, ("", "Cycles", "FLIP"), 2, (200, 160))
 
 
 if __name__ == "__main__":
