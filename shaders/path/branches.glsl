@@ -206,7 +206,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
         return radiance;
     }
     const vec3 view = -incoming;
-    const Lobe lobe = lobeOf(s, m);
+    const Lobe lobe = lobeOf(s, m, view);
     const Facet facet = facetOf(s, m, lobe, incoming, face, state.seed);
     vec3 reflected, through;
     sharesOf(facet, m, face, s.base_color, lobe, view, reflected, through);

@@ -38,7 +38,7 @@ struct Shade {
 
 Shade shadeOf(Surface s, Material m, vec3 view) {
     Shade shade;
-    shade.lobe = lobeOf(s, m);
+    shade.lobe = lobeOf(s, m, view);
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
     shade.gains = Gains(vec3(1), vec3(1));
     if (!isMirror(shade.lobe)) shade.gains = gainsOf(m, s.base_color, splitSum(shade.lobe.mean_roughness, cosine));
@@ -121,14 +121,16 @@ vec3 lampLight(uint index, Surface s, Material m, Shade shade, vec3 view, out ve
 
 /// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it: of what is in front, and of what is behind.
 void skyLight(Surface s, Material m, Shade shade, vec3 view, out vec3 front, out vec3 behind) {
-    // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection.
+    // What the surface mirrors is not available for diffuse light: the share that scatter.comp gives to the reflection. Where rays find
+    // what is in the way, the texture that says so is left out.
+    const float open = (frame[0].effects & EFFECT_AMBIENT) != 0u ? 1.0 : m.occlusion;
     front = behind = vec3(0);
     vec3 share = vec3(0), left = vec3(0);
     if (shade.diffuse != vec3(0) || shade.seeping != vec3(0)) {
-        left = m.occlusion * vec3(leftByMirroring(s, m, shade, view) * shade.below_sheen * shade.below_coat);
+        left = open * vec3(leftByMirroring(s, m, shade, view) * shade.below_sheen * shade.below_coat);
         share = shade.diffuse * left;
     }
-    if (sheened) share += sheenAlbedo(m, dot(view, s.normal)) / PI * (m.occlusion * shade.below_coat);
+    if (sheened) share += sheenAlbedo(m, dot(view, s.normal)) / PI * (open * shade.below_coat);
     if (share != vec3(0)) front = share * environmentIrradiance(s.normal);
     if (seeping && shade.seeping != vec3(0)) behind = shade.seeping * left * environmentIrradiance(-s.normal);
 }

@@ -9,7 +9,7 @@ struct Lobe {
     vec3 along;       ///< tangent along which alpha.x counts; unused where both are the same
     vec2 alpha;
     float roughness;  ///< perceptual; of a stretched lobe that of a round one of the same area
-    float mean_roughness;  ///< that of a round one that masks about as much
+    float mean_roughness;  ///< that of a round one that masks the view as much
     float straight;   ///< how much of the mean microfacet is the normal
     bool round;
 };
@@ -19,15 +19,17 @@ bool isMirror(Lobe lobe) { return lobe.roughness < MIRROR_ROUGHNESS; }
 
 Lobe roundLobe(vec3 normal, float roughness) { return Lobe(normal, vec3(0), vec2(roughness * roughness), roughness, roughness, 1.0, true); }
 
-/// Of a surface below its coat (KHR_materials_anisotropy).
-Lobe lobeOf(Surface s, Material m) {
+/// Of a surface below its coat (KHR_materials_anisotropy); `view`: towards the viewer.
+Lobe lobeOf(Surface s, Material m, vec3 view) {
     Lobe lobe = roundLobe(s.normal, m.roughness);
     if (!stretched || s.stretch == 0.0) return lobe;
     const float narrow = max(lobe.alpha.y, MIRROR_ROUGHNESS * MIRROR_ROUGHNESS);
     lobe.alpha = vec2(mix(narrow, 1.0, s.stretch * s.stretch), narrow);
     lobe.along = s.along;
     lobe.roughness = max(sqrt(sqrt(lobe.alpha.x * lobe.alpha.y)), MIRROR_ROUGHNESS);  // rounding makes no mirror
-    lobe.mean_roughness = sqrt(sqrt(0.5 * dot(lobe.alpha, lobe.alpha)));
+    const vec2 across = vec2(dot(view, s.along), dot(view, cross(s.normal, s.along))), wide = lobe.alpha * across;
+    const float across2 = dot(across, across);
+    lobe.mean_roughness = sqrt(sqrt(across2 > 0.0 ? dot(wide, wide) / across2 : 0.5 * dot(lobe.alpha, lobe.alpha)));
     const float straight = 1.0 - s.stretch * (1.0 - m.roughness), straight2 = straight * straight;
     lobe.straight = straight2 * straight2;
     lobe.round = false;

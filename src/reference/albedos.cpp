@@ -78,7 +78,7 @@ Albedos::Means Albedos::at(const Surface& surface, double cosine) const {
     const Optics &constants = surfaces_.optics(surface.material), &here = surface.optics;
     Table* first = &tables_[first_table_[surface.material]];
     const bool varies = first_table_[surface.material + 1] > first_table_[surface.material] + 1;
-    Means means = varies ? between(first, constants, here.mean_roughness(), cosine)
+    Means means = varies ? between(first, constants, surface.mean_roughness, cosine)
                          : look_up(*first, constants, constants.roughness, cosine);
     // Schlick's is linear in both reflectances, which textures change.
     if (here.specified) means.dielectric = here.f0 * means.normal + here.f90 * means.grazing;

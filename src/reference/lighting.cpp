@@ -145,8 +145,9 @@ glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& pa
     const glm::dvec3 below = glm::dvec3((1 - m.metallic) * (1 - m.transmission) / pi * seen.scattered * seen.sheen);
     glm::dvec3 front = below * (1 - m.behind) * m.base_color, back = below * m.behind * m.behind_color;
     if (largest(m.sheen) > 0) front += m.sheen * context_.albedos.sheen(s, seen.n_v) / pi;
-    front *= m.occlusion * (1 - seen.coat) * context_.surroundings.irradiance(s.normal);
-    back *= m.occlusion * (1 - seen.coat) * context_.surroundings.irradiance(-s.normal);
+    const double open = context_.settings.ambient ? 1 : m.occlusion;  // or rays find out
+    front *= open * (1 - seen.coat) * context_.surroundings.irradiance(s.normal);
+    back *= open * (1 - seen.coat) * context_.surroundings.irradiance(-s.normal);
     if (!context_.settings.ambient) return front + back;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
     const glm::dvec3 sampled = cosine_direction(s.normal, random_pair(path.seed, sample_, Purpose::sky));

@@ -53,12 +53,6 @@ double Optics::lobe_roughness() const {
     return std::max(MIRROR_ROUGHNESS, std::pow(alpha.x * alpha.y, 0.25));
 }
 
-double Optics::mean_roughness() const {
-    if (anisotropy == 0) return roughness;
-    const glm::dvec2 a = alphas();
-    return std::pow(glm::dot(a, a) / 2, 0.25);
-}
-
 double Optics::index(Channel channel) const {
     const double side = channel == Channel::red ? -1 : channel == Channel::blue ? 1 : 0;
     return std::max(1.0, ior + side * spread);
@@ -188,6 +182,16 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     }
     s.optics = evaluate(s.material, place);
     if (s.optics.anisotropy > 0) stretch(s, place, interpolated);
+    s.mean_roughness = s.optics.roughness;
+    if (s.optics.anisotropy > 0) {
+        // Seen from one side the lobe has one width: masking knows no other.
+        const glm::dvec2 alphas = s.optics.alphas();
+        const glm::dvec2 across(glm::dot(direction, s.along), glm::dot(direction, glm::cross(s.normal, s.along)));
+        const double width2 = glm::dot(across, across) > 0
+                                  ? glm::dot(alphas * across, alphas * across) / glm::dot(across, across)
+                                  : glm::dot(alphas, alphas) / 2;
+        s.mean_roughness = std::pow(width2, 0.25);
+    }
     return s;
 }
 

@@ -50,8 +50,6 @@ struct Optics {
     glm::dvec2 alphas() const;
     /// Of the round lobe that is as large: what decides by a roughness goes by this one.
     double lobe_roughness() const;
-    /// Of the round lobe that masks about as much.
-    double mean_roughness() const;
     /// Index of refraction, ≥ 1; all: the middle one.
     double index(Channel channel) const;
     /// Of one face of the dielectric part; `cosine` ≥ 0 on the incoming side, `leaving`: from inside.
@@ -82,8 +80,9 @@ struct Surface {
     double error;             ///< bound on the position's rounding error, world units
     bool front;               ///< the ray comes from the side that the normals point to
     uint32_t material;
-    Optics optics;     ///< the material here
-    double curvature;  ///< how much the normal turns per world unit; > 0: the ray meets a bulge
+    Optics optics;          ///< the material here
+    double mean_roughness;  ///< of the round lobe that masks the ray that came as much as the material's own
+    double curvature;       ///< how much the normal turns per world unit; > 0: the ray meets a bulge
 
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
     /// a triangle that coincides with the surface's own is not hit either.

@@ -35,8 +35,12 @@ struct TwoWidths {
         const double c = std::cos(rotation), s = std::sin(rotation);
         return {c * d.x + s * d.y, c * d.y - s * d.x, d.z};
     }
-    /// Of the round lobe whose masking counts where only the mean is known.
-    double mean_roughness() const { return std::pow((along * along + across * across) / 2, 0.25); }
+    /// Of the round lobe that masks this view as much.
+    double mean_roughness(const glm::dvec3& view) const {
+        const glm::dvec3 v = turned(view);
+        const double wide2 = std::pow(along * v.x, 2) + std::pow(across * v.y, 2);
+        return std::pow(wide2 / (v.x * v.x + v.y * v.y), 0.25);
+    }
     double masking(const glm::dvec3& direction) const {
         const glm::dvec3 d = turned(direction);
         const double slope2 = (std::pow(along * d.x, 2) + std::pow(across * d.y, 2)) / (d.z * d.z);
@@ -85,7 +89,8 @@ TEST_F(AnisotropyTest, HighlightsAreStretched) {
                 stage.sun(-kToSun, glm::vec3(1));
                 for (const double cosine : {0.9, 0.5}) {
                     const double want = lobe.lobe(direction_at(cosine), kToSun);
-                    const double kept = ggx_mean(cosine, lobe.mean_roughness(), [](double) { return 1; });
+                    const double kept =
+                        ggx_mean(cosine, lobe.mean_roughness(direction_at(cosine)), [](double) { return 1; });
                     for (const bool compensated : {true, false}) {
                         RenderSettings settings = settings_for(slanted(cosine), 2);
                         settings.energy_compensation = compensated;
@@ -139,7 +144,7 @@ TEST_F(AnisotropyTest, SamplesFollowTheLobe) {
             RenderSettings settings = settings_for(slanted(cosine), 8);
             settings.spp = 64;
             const double kept = lobe.kept(direction_at(cosine)),
-                         round = ggx_mean(cosine, lobe.mean_roughness(), [](double) { return 1; });
+                         round = ggx_mean(cosine, lobe.mean_roughness(direction_at(cosine)), [](double) { return 1; });
             for (const bool compensated : {true, false}) {
                 settings.energy_compensation = compensated;
                 EXPECT_NEAR(mean_radiance(render(stage, white, settings)).x, kept / (compensated ? round : 1), 5e-3)

@@ -71,17 +71,20 @@ TEST_F(Outputs, FoldersAreMadeWhenAFileIsWritten) {
 
 TEST(PictureFiles, FormatsFollowFromTheName) {
     for (const char* name : {"a.png", "a.exr", "a.hdr", "a.PNG", "b.tiff.Exr"})
-        EXPECT_NO_THROW(check_picture_name(name)) << name;
+        EXPECT_NO_THROW(check_picture_name(name, false)) << name;
     for (const char* name : {"a", "a.jpg", "png", ".png", "a.png.", "a.png/b"})
-        expect_error([&] { check_picture_name(name); }, "name it .png, .exr or .hdr");
+        expect_error([&] { check_picture_name(name, false); }, "name it .png, .exr or .hdr");
+    EXPECT_NO_THROW(check_picture_name("a.exr", true));
+    EXPECT_THROW(check_picture_name("a.png", true), Error) << "only an EXR has layers";
 }
 
 TEST(PictureFiles, AuxiliaryPicturesStandBesideThePicture) {
-    EXPECT_EQ(aov_paths("x/a.png", Aov::normal), Paths({"x/a.normal.exr"}));
-    EXPECT_EQ(aov_paths("a.b.hdr", Aov::depth), Paths({"a.b.depth.exr"}));
+    EXPECT_EQ(paths_beside("x/a.png", {Aov::normal}, false), Paths({"x/a.normal.exr"}));
+    EXPECT_EQ(paths_beside("a.b.hdr", {Aov::depth}, false), Paths({"a.b.depth.exr"}));
+    EXPECT_EQ(paths_beside("a.exr", {Aov::depth, Aov::normal}, true), Paths()) << "they are layers of it";
     size_t with_heat_map = 0;
     for (const Aov aov : values_of<Aov>()) {
-        const Paths paths = aov_paths("a.png", aov);
+        const Paths paths = paths_beside("a.png", {aov}, false);
         ASSERT_EQ(paths.size(), cost_field(aov) ? 2u : 1u);
         EXPECT_EQ(paths[0], fmt::format("a.{}.exr", name_of(aov)));
         if (!cost_field(aov)) continue;
@@ -101,8 +104,8 @@ TEST_F(Outputs, APictureIsWrittenWithAllThatGoesWithIt) {
     picture.aovs.costs.resize(2);
     picture.aovs.costs[0].steps = 3;
     picture.aovs.costs[1].steps = 6;
-    write_picture(picture, {Aov::depth, Aov::cost_steps}, folder / "a.png");
-    write_picture(picture, {}, folder / "b.exr");
+    write_picture(picture, {Aov::depth, Aov::cost_steps}, false, folder / "a.png");
+    write_picture(picture, {}, false, folder / "b.exr");
     EXPECT_EQ(files(), 5u);
     EXPECT_EQ(read_ldr(folder / "a.png").pixels, picture.encoded);
     EXPECT_EQ(read_hdr(folder / "b.exr").pixels, picture.radiance);

@@ -8,7 +8,7 @@ PROBE(Input, Output)
 
 Output probe(Input x) {
     Output o;
-    const Lobe lobe = lobeOf(x.surface, Material(x.roughness));
+    const Lobe lobe = lobeOf(x.surface, Material(x.roughness), x.view);
     o.half_vector = sampleMicrofacet(lobe, x.view, x.random);
     const vec3 to_light = reflect(-x.view, o.half_vector);
     o.highlight = highlight(lobe, x.view, to_light, o.half_vector);

@@ -8,7 +8,7 @@ PROBE(Input, Output)
 
 Output probe(Input x) {
     Output o;
-    o.half_vector = sampleMicrofacet(lobeOf(x.surface, Material(x.roughness)), x.view, x.random);
+    o.half_vector = sampleMicrofacet(lobeOf(x.surface, Material(x.roughness), x.view), x.view, x.random);
     o.reflected = reflect(-x.view, o.half_vector);
     o.enters = refractRay(-x.view, o.half_vector, x.index, o.entering) ? 1u : 0u;
     o.leaves = refractRay(-x.view, o.half_vector, 1.0 / x.index, o.leaving) ? 1u : 0u;
