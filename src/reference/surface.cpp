@@ -127,6 +127,20 @@ Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene)
     for (const Material& material : scene.materials) optics_.emplace_back(material);
 }
 
+namespace {
+
+/// Seen from one side a stretched lobe has one width: masking knows no other.
+double masked_roughness(const Surface& s, const glm::dvec3& direction) {
+    if (s.optics.anisotropy == 0) return s.optics.roughness;
+    const glm::dvec2 alphas = s.optics.alphas();
+    const glm::dvec2 across(glm::dot(direction, s.along), glm::dot(direction, glm::cross(s.normal, s.along)));
+    const double length2 = glm::dot(across, across);
+    const glm::dvec2 wide = alphas * across;
+    return std::pow(length2 > 0 ? glm::dot(wide, wide) / length2 : glm::dot(alphas, alphas) / 2, 0.25);
+}
+
+}  // namespace
+
 Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& direction, double width) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
     Place place{corners, {std::max(0.0, 1 - u - v), u, v}, 0};
@@ -182,16 +196,7 @@ Surface Surfaces::at(uint32_t triangle, double u, double v, const glm::dvec3& di
     }
     s.optics = evaluate(s.material, place);
     if (s.optics.anisotropy > 0) stretch(s, place, interpolated);
-    s.mean_roughness = s.optics.roughness;
-    if (s.optics.anisotropy > 0) {
-        // Seen from one side the lobe has one width: masking knows no other.
-        const glm::dvec2 alphas = s.optics.alphas();
-        const glm::dvec2 across(glm::dot(direction, s.along), glm::dot(direction, glm::cross(s.normal, s.along)));
-        const double width2 = glm::dot(across, across) > 0
-                                  ? glm::dot(alphas * across, alphas * across) / glm::dot(across, across)
-                                  : glm::dot(alphas, alphas) / 2;
-        s.mean_roughness = std::pow(width2, 0.25);
-    }
+    s.mean_roughness = masked_roughness(s, direction);
     return s;
 }
 
