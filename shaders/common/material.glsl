@@ -53,7 +53,8 @@ const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (
            filtered = (material_kinds & MATERIALS_FILTERED) != 0u, blended = (material_kinds & MATERIALS_BLENDED) != 0u,
            coated = (material_kinds & MATERIALS_COATED) != 0u, sheened = (material_kinds & MATERIALS_SHEEN) != 0u,
            filmed = (material_kinds & MATERIALS_FILMED) != 0u, stretched = (material_kinds & MATERIALS_STRETCHED) != 0u,
-           dispersive = (material_kinds & MATERIALS_DISPERSIVE) != 0u, seeping = (material_kinds & MATERIALS_SEEPING) != 0u;
+           dispersive = (material_kinds & MATERIALS_DISPERSIVE) != 0u, seeping = (material_kinds & MATERIALS_SEEPING) != 0u,
+           frosted = (material_kinds & MATERIALS_FROSTED) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {

@@ -85,6 +85,7 @@ SHARED_SIZE(GpuMaterial, 272);
 #define MATERIALS_STRETCHED 128u  // some have an anisotropic lobe
 #define MATERIALS_DISPERSIVE 256u // some refract each colour differently
 #define MATERIALS_SEEPING 512u    // some let diffuse light through
+#define MATERIALS_FROSTED 1024u   // some are rough glass
 
 /// A texture as materials use it.
 struct GpuTexture {

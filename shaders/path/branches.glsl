@@ -171,12 +171,12 @@ void sharesOf(Facet f, Material m, Interface face, vec3 base_color, Lobe lobe, v
     if (samplesMicrofacets()) {
         const float kept = masking(lobe, f.reflected);
         const vec3 metal = metalReflectance(m, face, base_color, cosine) * gains.metal;
-        if (transmits(m))
+        if (transmitsRough(m))
             keptByGlass(f, lobe, reflected, through);
         else
             reflected *= kept * gains.dielectric;
         reflected = mix(reflected, metal * kept, m.metallic);
-    } else if (!transmits(m)) {
+    } else if (!transmitsRough(m)) {
         reflected = mix(dielectricAlbedo(m, means, gains), metalAlbedo(m, base_color, means, gains), m.metallic);
     } else if (compensated) {
         reflected = mix(reflected, metalAlbedo(m, base_color, means, gains), m.metallic);

@@ -9,6 +9,9 @@
 /// Does light pass through the material?
 bool transmits(Material m) { return m.transmission > 0.0 && m.metallic < 1.0; }
 
+/// The same of what is no mirror.
+bool transmitsRough(Material m) { return frosted && transmits(m); }
+
 /// What the light that is not reflected is multiplied by on its way through.
 vec3 transmissionTint(Material m, vec3 base_color) { return (1.0 - m.metallic) * m.transmission * base_color; }
 

@@ -57,10 +57,10 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
 /// What the dielectric part of the surface leaves, of light from all around, for what is scattered.
 float leftByMirroring(Surface s, Material m, Shade shade, vec3 view) {
     const float cosine = clamp(dot(view, s.normal), 0.0, 1.0);
-    if (!isMirror(shade.lobe) && !transmits(m))
+    if (!isMirror(shade.lobe) && !transmitsRough(m))
         return 1.0 - largest(dielectricAlbedo(m, splitSum(shade.lobe.mean_roughness, cosine), shade.gains));
     vec3 mirrored = interfaceReflectance(m, interfaceInAir(m, s.front, CHANNEL_MIDDLE), cosine);
-    if (!isMirror(shade.lobe) && (frame[0].effects & EFFECT_COMPENSATION) == 0u) mirrored *= splitSum(shade.lobe.mean_roughness, cosine).x;
+    if (frosted && !isMirror(shade.lobe) && (frame[0].effects & EFFECT_COMPENSATION) == 0u) mirrored *= splitSum(shade.lobe.mean_roughness, cosine).x;
     return 1.0 - largest(mirrored);
 }
 
@@ -101,7 +101,7 @@ vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
         result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
         if (!isMirror(shade.lobe)) {
             vec3 gain = shade.gains.dielectric;
-            if (transmits(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
+            if (transmitsRough(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
             result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.gains.metal, m.metallic) * highlight(shade.lobe, view, to_light, h);
         }
         if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);

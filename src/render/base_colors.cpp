@@ -61,6 +61,8 @@ uint32_t material_kinds(const Material& material, const GpuMaterial& m) {
     if (material.anisotropy > 0) kinds |= MATERIALS_STRETCHED;
     if (m.spread > 0 && transmits(material) && material.thickness > 0) kinds |= MATERIALS_DISPERSIVE;
     if (material.diffuse_transmission > 0) kinds |= MATERIALS_SEEPING;
+    if (transmits(material) && (material.roughness >= MIRROR_ROUGHNESS || material.anisotropy > 0))
+        kinds |= MATERIALS_FROSTED;
     return kinds;
 }
 

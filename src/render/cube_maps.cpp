@@ -194,8 +194,7 @@ void CubeMaps::record_shading(Commands& commands, const Buffer& frame, const Pat
     const Groups groups = groups_for(params.capacity, 64);
     commands.run(device_.pass("cubemap_scatter", {scene_.base_colors.constant()}),
                  surface_bindings(scene_, frame,
-                                  {{"lookups", scene_.lookups},
-                                   {"rays", level.rays},
+                                  {{"rays", level.rays},
                                    {"states", level.states},
                                    {"hits", level.hits},
                                    {"nodes", level.nodes},

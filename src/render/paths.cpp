@@ -13,8 +13,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
     const bool camera = p.level == 0 && !layered;  // which makes its rays itself
     const std::vector<Binding> bindings =
         surface_bindings(scene, f.view.target.frame,
-                         {{"lookups", scene.lookups},
-                          Binding::if_used("rays", camera ? nullptr : &level.rays),
+                         {Binding::if_used("rays", camera ? nullptr : &level.rays),
                           Binding::if_used("states", camera ? nullptr : &level.states),
                           Binding::if_used("hits", camera ? nullptr : &level.hits),
                           {"nodes", level.nodes},

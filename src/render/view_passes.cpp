@@ -21,7 +21,8 @@ std::vector<Binding> surface_bindings(const GpuScene& scene, const Buffer& frame
                                      {"normals", scene.normals},
                                      {"positions", scene.triangles.positions},
                                      {"triangles", scene.triangles.triangles},
-                                     {"instances", scene.instances.table()}};
+                                     {"instances", scene.instances.table()},
+                                     Binding::if_used("lookups", scene.lookups)};
     for (const Binding& binding : base_color_bindings(scene.base_colors)) bindings.push_back(binding);
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;

@@ -130,14 +130,16 @@ TEST_F(FilmOnTest, WhatItDoesNotReflectIsScatteredBelow) {
 }
 
 TEST_F(FilmOnTest, RoughOnesReflectItsShareOfTheLobe) {
-    // One sample: the film's at the viewer's angle, times what the lobe keeps, and what compensation makes of it.
+    // One sample: the film's at the angle at which Schlick's formula has its mean, times what the lobe keeps, and what
+    // compensation makes of it.
     const Film film{1.8, 400};
     const glm::dvec3 copper(0.95, 0.64, 0.54);
     const double cosine = 0.6, roughness = 0.5;
     const double kept = ggx_mean(cosine, roughness, [](double) { return 1; });
+    const double grazing = ggx_mean(cosine, roughness, [](double c) { return std::pow(1 - c, 5); });
     Material m = filmed(metal("copper", glm::vec3(copper)), film);
     m.roughness = float(roughness);
-    const glm::dvec3 share = film_reflectance(film, index_of(copper), cosine);
+    const glm::dvec3 share = film_reflectance(film, index_of(copper), 1 - std::pow(grazing / kept, 0.2));
     const glm::dvec3 want = share * kept * (1.0 + share * (1 - kept) / kept), got = seen(m, cosine, white);
     EXPECT_TRUE(near(got, want, 4e-3)) << text(got) << ", expected " << text(want);
 }
