@@ -11,8 +11,11 @@ namespace {
 
 class SidesCommand : public ProgramTest {
   protected:
-    /// A cube from -1 to 1; `inwards`: its fronts are inside.
-    std::string cube(bool inwards, const nlohmann::json& material = nlohmann::json::object()) {
+    /// A cube from -1 to 1; `inwards`: its fronts are inside. Grey: a white one is invisible before a background that
+    /// is the same all around.
+    std::string cube(bool inwards, nlohmann::json material = nlohmann::json::object()) {
+        if (!material.contains("pbrMetallicRoughness"))
+            material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1};
         std::vector<float> corners;
         for (int i = 0; i < 8; i++)
             for (int k = 0; k < 3; k++) corners.push_back(i >> k & 1 ? 1.f : -1.f);
