@@ -9,8 +9,8 @@ CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
 help:
 	@echo 'make demo    install what is missing, build, render a built-in scene to out/demo.png'
-	@echo 'make test    install what is missing, build, run the tests, then the CPU-side ones under the sanitizers'
-	@echo 'make test-long    what takes too long for that: every ray and scene, every source file of the program compiled by itself'
+	@echo 'make test    install what is missing, build, run the tests'
+	@echo 'make test-long    what takes too long for that: every ray and scene, the sanitizers, every source file by itself'
 	@echo 'make build   install what is missing, build $(PROGRAM)'
 	@echo 'make clean   remove build/ and out/'
 	@echo 'make format  apply clang-format (check-format: only look)'
@@ -28,15 +28,15 @@ test: test-packages
 	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset release --parallel $(JOBS) --target tests
 	$(CTEST) --test-dir build/release -LE long
-	@echo '== the CPU-side tests once more, under the address and undefined-behaviour sanitizers'
-	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
-	@cmake --build --preset sanitize --parallel $(JOBS) --target tests
-	$(CTEST) --test-dir build/sanitize -L cpu
 
 test-long: test-packages
 	@cmake --preset release --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset release --parallel $(JOBS)
 	$(CTEST) --test-dir build/release -L long
+	@echo '== the CPU-side tests once more, under the address and undefined-behaviour sanitizers'
+	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
+	@cmake --build --preset sanitize --parallel $(JOBS) --target tests
+	$(CTEST) --test-dir build/sanitize -L cpu
 	@echo '== every source file of the program by itself: each must include what it uses'
 	@cmake --preset separate --log-level=NOTICE -DPEELRAY_TESTS=OFF
 	@cmake --build --preset separate --parallel $(JOBS)
