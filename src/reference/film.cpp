@@ -63,6 +63,7 @@ double interference(double first, double second, double phase) {
 
 glm::dvec3 reflectance(double cosine, double index, double thickness, const glm::dvec3& base) {
     static const Weights weights;
+    cosine = std::max(cosine, GRAZING_COSINE);  // along the surface a film like air would be 0 over 0
     const double sine2 = 1 - cosine * cosine, cosine2 = std::sqrt(1 - sine2 / (index * index));
     const Amplitudes top = amplitudes(1, cosine, index, cosine2);
     Amplitudes bottom[3];

@@ -79,7 +79,7 @@ Material black_dielectric(float ior = 1.5f) {
     return m;
 }
 
-const std::vector<Film> kFilms = {{1.3, 400}, {1.33, 0}, {1.8, 150}, {2.4, 350}, {1.5, 900}};
+const std::vector<Film> kFilms = {{1.3, 400}, {1, 400}, {1.33, 0}, {1.8, 150}, {2.4, 350}, {1.5, 900}};
 
 class FilmOnTest : public FilmTest {
   protected:
