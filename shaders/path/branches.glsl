@@ -116,10 +116,9 @@ struct Facet {
 };
 
 /// `incoming` as the microfacet of a thin wall lets it through: as often to this side of the straight way as the other face lets it.
-vec3 throughThin(Surface s, Lobe lobe, vec3 incoming, vec3 reflected) {
+vec3 throughThin(Lobe lobe, vec3 incoming, vec3 reflected) {
     if (!samplesMicrofacets() || isMirror(lobe)) return incoming;
-    const vec3 mirrored = reflected - 2.0 * dot(reflected, lobe.normal) * lobe.normal;
-    return -aboveSurface(-mirrored, s.geometric);
+    return reflected - 2.0 * dot(reflected, lobe.normal) * lobe.normal;
 }
 
 Facet facetOf(Surface s, Material m, Lobe lobe, vec3 incoming, Interface face, uint seed) {
@@ -133,7 +132,7 @@ Facet facetOf(Surface s, Material m, Lobe lobe, vec3 incoming, Interface face, u
     if (samplesMicrofacets() || isMirror(lobe) || f.passes) f.dielectric = interfaceReflectance(m, face, clamp(-dot(incoming, f.normal), 0.0, 1.0));
     if (!f.passes) return f;
     if ((m.flags & MATERIAL_THIN) != 0u) {
-        f.through = throughThin(s, lobe, incoming, f.reflected);
+        f.through = throughThin(lobe, incoming, f.reflected);
         return f;
     }
     f.passes = refractRay(incoming, f.normal, face.eta, f.through);
@@ -225,7 +224,9 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & (RAY_PASSES | RAY_CHANNEL));
         const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
-        refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, facet.through, inside | sun, keptCone(beyond), EFFECT_REFRACTION);
+        const bool blurred = thin && samplesMicrofacets() && !isMirror(lobe);
+        const vec3 direction = blurred ? -aboveSurface(-facet.through, s.geometric) : facet.through;
+        refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION);
         decide(refraction, state, false);
         disperse(facet, face, incoming, channelOf(state.medium), refraction);
     }

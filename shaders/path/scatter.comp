@@ -152,6 +152,7 @@ vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
 void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+    if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
     if ((frame[0].effects & EFFECT_SHADOW) != 0u)
         for (uint k = 0u; k < frame[0].lights; k++) {

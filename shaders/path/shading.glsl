@@ -99,7 +99,7 @@ float sheenLambda(float cosine, float alpha) {
     const float part = (1.0 - alpha) * (1.0 - alpha);
     const vec3 abc = mix(vec3(21.5473, 3.82987, 0.19823), vec3(25.3245, 3.32435, 0.16801), part);
     const vec2 de = mix(vec2(-1.97760, -4.32054), vec2(-1.27393, -4.85967), part);
-    const float x = cosine < 0.5 ? cosine : 1.0 - cosine;
+    const float x = max(cosine < 0.5 ? cosine : 1.0 - cosine, 0.0);  // rounding makes cosines above 1
     const float here = abc.x / (1.0 + abc.y * pow(x, abc.z)) + de.x * x + de.y;
     return exp(cosine < 0.5 ? here : 2.0 * (abc.x / (1.0 + abc.y * pow(0.5, abc.z)) + de.x * 0.5 + de.y) - here);
 }

@@ -26,8 +26,8 @@ vec3 filmMean(float way) {
 /// Reflectance at `cosine` ≥ 0 of a film of this thickness (nm) and index, between air and what has the index `base`.
 vec3 thinFilm(float thickness, float index, vec3 base, float cosine) {
     cosine = max(cosine, GRAZING_COSINE);  // along the surface a film like air would be 0 over 0
-    const float sine2 = 1.0 - cosine * cosine, within = sqrt(max(1.0 - sine2 / (index * index), 0.0));
-    const vec3 below = sqrt(max(1.0 - sine2 / (base * base), vec3(0)));
+    const float within = sqrt(index * index - 1.0 + cosine * cosine) / index;
+    const vec3 below = sqrt(base * base - 1.0 + cosine * cosine) / base;
     // Amplitudes of the upper and the lower face, across the plane of incidence and in it.
     const float across1 = (cosine - index * within) / (cosine + index * within), along1 = (index * cosine - within) / (index * cosine + within);
     const vec3 across2 = (index * within - base * below) / (index * within + base * below);

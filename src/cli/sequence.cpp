@@ -73,7 +73,8 @@ void check_single(const RenderArguments& a) {
              a.output.string());
     const bool motion_at_fps = s.fps && wants(a, Aov::motion);
     const char* option = s.fps && !motion_at_fps ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
-    if (option) fail("{} is for several frames: add --frames A:B or --turntable N", option);
+    if (option)
+        fail("{} is for several frames: add --frames A:B or --turntable N{}", option, s.fps ? ", or --aov motion" : "");
 }
 
 }  // namespace peelray

@@ -81,10 +81,8 @@ Shader::Shares Shader::shares(const Surface& s, const Lobe& lobe, const Path& pa
 /// Does light that is refracted here come apart?
 bool Shader::disperses(const Surface& s, const Path& path, const Meeting& meeting) const {
     if (path.channel != Channel::all || !s.optics.transmits() || s.optics.thin || s.optics.alpha < 1) return false;
-    const auto spreads = [&](uint32_t medium) {
-        return medium != Media::air && context_.surfaces.optics(medium).spread > 0;
-    };
-    return meeting.wall ? spreads(meeting.from) || spreads(meeting.to) : s.optics.spread > 0;
+    const double middle = relative_index(meeting, s, Channel::green);
+    return relative_index(meeting, s, Channel::red) != middle || relative_index(meeting, s, Channel::blue) != middle;
 }
 
 /// Each channel's ray takes its own way from the same microfacet; what is reflected totally has gone with the rest.
@@ -97,7 +95,6 @@ void Shader::split(const Path& path, const Meeting& meeting, const Surface& s, c
         part.weight = glm::dvec3(0);
         if (direction) part.weight[int(channel)] = out.refraction.weight[int(channel)];
         part.direction = direction.value_or(path.direction);
-        part.cone = path.cone.refracted(s.curvature, eta);
         part.channel = channel;
         out.split.push_back(part);
     }

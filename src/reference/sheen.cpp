@@ -11,6 +11,7 @@ namespace {
 
 /// Their fit of what fibres hide, for the smoothest and the roughest cloth; in between the coefficients are mixed.
 double hidden(double alpha, double cosine) {
+    cosine = std::min(cosine, 1.0);  // beyond it by rounding
     constexpr double smooth[5] = {25.3245, 3.32435, 0.16801, -1.27393, -4.85967};
     constexpr double rough[5] = {21.5473, 3.82987, 0.19823, -1.97760, -4.32054};
     const double part = (1 - alpha) * (1 - alpha);

@@ -111,7 +111,8 @@ glm::dvec3 Optics::face_reflectance(double cosine, bool leaving, Channel channel
 
 glm::dvec3 Optics::metal_reflectance(double cosine, bool leaving, Channel channel) const {
     const glm::dvec3 plain = optics::fresnel_schlick(base_color, 1, cosine);
-    return film == 0 || metallic == 0 ? plain : glm::mix(plain, film_on_metal(cosine, leaving, channel), film);
+    const Channel one = channel == Channel::all ? Channel::green : channel;  // metals do not disperse
+    return film == 0 || metallic == 0 ? plain : glm::mix(plain, film_on_metal(cosine, leaving, one), film);
 }
 
 glm::dvec3 Optics::wall_reflectance(double cosine, bool leaving, Channel channel) const {

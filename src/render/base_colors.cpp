@@ -45,8 +45,8 @@ void set_rare_parts(GpuMaterial& m, const Material& material) {
     m.film_least = material.film_thickness_texture ? material.film_least : material.film_most;
     m.anisotropy = material.anisotropy;
     m.anisotropy_along = {std::cos(material.anisotropy_rotation), std::sin(material.anisotropy_rotation)};
-    m.spread =
-        material.ior == 0 ? 0 : float(DISPERSION_SPREAD) * material.dispersion * (std::max(material.ior, 1.0f) - 1);
+    const bool disperses = transmits(material) && material.thickness > 0 && material.ior != 0;  // volumes alone
+    m.spread = disperses ? float(DISPERSION_SPREAD) * material.dispersion * (std::max(material.ior, 1.0f) - 1) : 0;
     m.diffuse_transmission = material.diffuse_transmission;
     m.diffuse_transmission_color = material.diffuse_transmission_color;
 }
@@ -59,7 +59,7 @@ uint32_t material_kinds(const Material& material, const GpuMaterial& m) {
     if (material.sheen_color != glm::vec3(0)) kinds |= MATERIALS_SHEEN;
     if (material.iridescence > 0) kinds |= MATERIALS_FILMED;
     if (material.anisotropy > 0) kinds |= MATERIALS_STRETCHED;
-    if (m.spread > 0 && transmits(material) && material.thickness > 0) kinds |= MATERIALS_DISPERSIVE;
+    if (m.spread > 0) kinds |= MATERIALS_DISPERSIVE;
     if (material.diffuse_transmission > 0) kinds |= MATERIALS_SEEPING;
     if (transmits(material) && (material.roughness >= MIRROR_ROUGHNESS || material.anisotropy > 0))
         kinds |= MATERIALS_FROSTED;

@@ -69,9 +69,10 @@ void describe_view(Frame& frame, const View& view, uint32_t height, uint32_t sam
     frame.cone = view.orthographic ? glm::vec2(across, 0) : glm::vec2(0, across);
 }
 
-uint32_t effects_of(const PictureSettings& settings) {
+/// What is traced or, with `maps`, looked up; in maps nobody sees whether the sky is hidden.
+uint32_t effects_of(const PictureSettings& settings, bool maps) {
     return (settings.reflection ? EFFECT_REFLECTION : 0u) | (settings.refraction ? EFFECT_REFRACTION : 0u) |
-           (settings.shadow ? EFFECT_SHADOW : 0u) | (settings.ambient ? EFFECT_AMBIENT : 0u);
+           (settings.shadow ? EFFECT_SHADOW : 0u) | (settings.ambient && !maps ? EFFECT_AMBIENT : 0u);
 }
 
 }  // namespace
@@ -181,13 +182,15 @@ void Renderer::Impl::prepare_view() {
     // A band's largest queue entries are rays and branches, or the walls of media; bands keep each queue below what the
     // device binds, with room to grow.
     const uint64_t entry = f.layered() ? sizeof(MediaWall) : sizeof(Ray);
-    const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (2 * entry),
+    const uint64_t each = f.scene.base_colors.kinds & MATERIALS_DISPERSIVE ? 4 : 2;  // rays from a hit
+    const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (each * entry),
                                     uint64_t(f.queues.most_lights()) / std::max(f.lights_per_hit(), 1u)});
     f.bands = Bands(settings.width, settings.height, most);
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = f.bands.row_pixels();
-    frame.effects = (f.tracer->traces() || f.maps ? effects_of(settings) : 0) |
+    const bool maps = f.maps != nullptr;
+    frame.effects = (f.tracer->traces() || maps ? effects_of(settings, maps) : 0) |
                     (settings.energy_compensation ? EFFECT_COMPENSATION : 0u);
     frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
     frame.bounces = settings.bounces;

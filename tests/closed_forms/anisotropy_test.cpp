@@ -74,7 +74,7 @@ struct TwoWidths {
 
 const glm::dvec3 kToSun = glm::normalize(glm::dvec3(-0.4, 0.35, 1));
 
-/// What the square sends to a viewer at this cosine to its normal, on the right, of a sun of strength 1.
+/// To a viewer on the right, at this cosine to the square's normal.
 glm::dvec3 direction_at(double cosine) {
     return {std::sqrt(1 - cosine * cosine), 0, cosine};
 }

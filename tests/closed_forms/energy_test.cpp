@@ -187,5 +187,27 @@ TEST_F(EnergyTest, ThinRoughGlassBlursWhatIsBehind) {
     }
 }
 
+TEST_F(EnergyTest, ThinRoughGlassReflectsWhatItsMicrofacetsReflect) {
+    // Seen straight on, before a black wall: the microfacets that send light along the surface reflect their share,
+    // too.
+    for (const double roughness : {0.3, 0.7, 1.0}) {
+        const double a2 = std::pow(roughness, 4);
+        double want = 0;
+        const int n = 20000;
+        for (int i = 0; i < n; i++) {
+            const double u = (i + 0.5) / n, face = fresnel(1 / std::sqrt(1 + a2 * u / (1 - u)), 1, 1.5);
+            want += 2 * face / (1 + face) / n;
+        }
+        Material m = thin_glass();
+        m.roughness = float(roughness);
+        Stage stage;
+        stage.add(texture_square(), m);
+        stage.add(box({-50, -50, -2}, {50, 50, -1e-3f}), lambert({0, 0, 0}));
+        RenderSettings settings = settings_for(orthographic({0, 0, 4}, {0, 0, 0}, 1), 16);
+        settings.spp = 32;
+        EXPECT_NEAR(mean_radiance(render(stage, white, settings)).y, want, 0.01) << roughness;
+    }
+}
+
 }  // namespace
 }  // namespace peelray

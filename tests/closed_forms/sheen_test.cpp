@@ -144,5 +144,31 @@ TEST_F(SheenTest, TexturesScaleColourAndRoughness) {
         .expect(0, 150);
 }
 
+TEST_F(SheenTest, LampsBehindTheViewerAreSeenOnEverySlope) {
+    // Where light, view and normal are one direction, rounding makes cosines above 1.
+    const glm::vec3 eye(1, 2, 4);
+    Material m = lambert(glm::vec3(0.5f));
+    m.sheen_color = glm::vec3(0.5f);
+    m.sheen_roughness = 0.6f;
+    Stage stage;
+    for (int i = 0; i < 64; i++) {
+        const glm::vec3 normal = glm::normalize(eye + glm::vec3(0.01f * float(i), 0.003f * float(i * i), 0));
+        const glm::vec3 right = glm::normalize(glm::cross({0, 1, 0}, normal)), up = glm::cross(normal, right);
+        const glm::vec3 middle((float(i % 8) - 3.5f) / 4, (float(i / 8) - 3.5f) / 4, 0);
+        Primitive square = texture_square();
+        for (size_t k = 0; k < 4; k++) {
+            const glm::vec3 p = square.positions[k] * 0.1f;
+            square.positions[k] = middle + right * p.x + up * p.y;
+            square.normals[k] = normal;
+        }
+        stage.add(square, m);
+        stage.sun(-normal, glm::vec3(0.1f));
+    }
+    RenderSettings settings = settings_for(orthographic(eye, {0, 0, 0}, 2.5f), 64);
+    settings.shadow = false;
+    for (const glm::vec4& pixel : render(stage, black, settings).radiance)
+        if (pixel.w > 0) EXPECT_GT(pixel.x, 0.3f);
+}
+
 }  // namespace
 }  // namespace peelray

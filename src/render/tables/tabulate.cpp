@@ -72,6 +72,7 @@ void write_split_sum(std::FILE* file) {
 
 /// Λ of the sheen's masking, by its authors' fit.
 double sheen_lambda(double cosine, double alpha) {
+    cosine = std::min(cosine, 1.0);
     const double part = squared(1 - alpha);
     const auto mixed = [&](double soft, double hard) { return part * soft + (1 - part) * hard; };
     const double a = mixed(25.3245, 21.5473), b = mixed(3.32435, 3.82987), c = mixed(0.16801, 0.19823),
