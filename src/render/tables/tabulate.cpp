@@ -84,7 +84,7 @@ double sheen_lambda(double cosine, double alpha) {
 /// Share of white light that a white sheen reflects: the midpoint rule over half vectors. Their density times the solid
 /// angle is even in t = sine^(2 + 1/alpha) but for one over the cosine, which rings that crowd at t = 1 make up for.
 double sheen(double alpha, double cosine) {
-    constexpr int rings = 64, sectors = 64;
+    constexpr int rings = 192, sectors = 24;
     const double sine = std::sqrt(1 - cosine * cosine), power = 2 + 1 / alpha;
     double sum = 0;
     for (int i = 0; i < rings; i++) {
