@@ -121,6 +121,21 @@ TEST_F(DispersionTest, ThinWallsDoNotDisperse) {
     EXPECT_EQ(plain.rays.refraction, other.rays.refraction);
 }
 
+TEST_F(DispersionTest, OpaqueBodiesDoNotDisperse) {
+    // Beside glass that does: only light that gets into a body knows its indices.
+    const double cosine = 0.5;
+    Material m = dispersive(1.5f, 20);
+    m.transmission = 0;
+    m.base_color = glm::vec3(0);
+    Stage stage;
+    stage.add(plate(0, -0.5f), m);
+    stage.add(sphere({0, 0, -9}, 0.1f, 8), dispersive(1.5f, 20));
+    const Camera camera = slanted(cosine);
+    tally(render(stage, white, settings_for(camera, 8)), camera, 1e-4, [&](const ViewRay&) {
+        return glm::dvec3(fresnel(cosine, 1, 1.5));
+    }).expect(0, 64);
+}
+
 TEST_F(DispersionTest, InsideAnotherMediumEachChannelKeepsItsOwn) {
     // A slab of dispersive glass in a plain liquid, and the other way round: the light that came apart stays apart.
     for (const bool outer : {false, true}) {

@@ -136,6 +136,23 @@ TEST_F(CubemapTracerTest, BlurGrowsWithRoughness) {
     }
 }
 
+TEST_F(CubemapTracerTest, StretchedLobesAreBlurredAsRoundOnesOfTheirSize) {
+    size_t grey[2] = {};
+    for (const float anisotropy : {0.f, 1.f}) {
+        Primitive ball = sphere({0, 0, 0}, 0.5f, 16);
+        for (const glm::vec3& n : ball.normals)
+            ball.tangents.emplace_back(glm::normalize(glm::cross(glm::vec3(0.01f, 1, 0), n)), 1);
+        Material m = rough_metal(0);
+        m.anisotropy = anisotropy;
+        Stage stage;
+        stage.add(ball, m);
+        stage.add(parallelogram({-5, -5, 10}, {0, 10, 0}, {10, 0, 0}), unlit({1, 1, 1}));
+        const RenderResult picture = cubemap(stage, black, settings_for(perspective({0, 0, 2}, {0, 0, 0}, 30), 64));
+        for (const glm::vec4& p : picture.radiance) grey[anisotropy > 0] += p.x > 0.05f && p.x < 0.6f;
+    }
+    EXPECT_GT(grey[1], grey[0] + 100);
+}
+
 TEST_F(CubemapTracerTest, AnObjectDoesNotSeeItself) {
     // A groove of two mirrors: a ray would meet both, the cube map only tells of the white sky.
     const glm::vec3 tint(0.5f);
