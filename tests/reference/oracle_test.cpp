@@ -167,7 +167,9 @@ TEST(Oracle, HitsOnBacksDoNotCount) {
             const glm::dvec3 a = geometry.positions[t.x];
             return glm::cross(glm::dvec3(geometry.positions[t.y]) - a, glm::dvec3(geometry.positions[t.z]) - a);
         };
-        if (fast.hit() && fast.triangle % 3) ASSERT_LT(glm::dot(normal(fast.triangle), ray.direction), 0);
+        if (fast.hit() && fast.triangle % 3) {
+            ASSERT_LT(glm::dot(normal(fast.triangle), ray.direction), 0);
+        }
         if (fast.triangle == whole.triangle) continue;
         ASSERT_TRUE(whole.triangle % 3);
         ASSERT_GE(glm::dot(normal(whole.triangle), ray.direction), 0);
