@@ -107,7 +107,7 @@ TextureFactors textureFactors(uint material, TexturePlace place) {
     vec4 value = vec4(1);
     for (int use = TEXTURE_EMISSIVE; use < TEXTURE_USES; use++) {
         const int index = materials[material].textures[use];
-        if (index < 0 || use == TEXTURE_NORMAL || use == TEXTURE_COAT_NORMAL || use == TEXTURE_ANISOTROPY) continue;
+        if (index < 0 || TEXTURE_TURNS(use)) continue;
         if (index != last) value = textureAt(index, place);
         last = index;
         const float number = value[materials[material].channels[use >> 4] >> uint(2 * (use & 15)) & 3u];
@@ -161,10 +161,13 @@ Material evaluate(uint material, TextureFactors f) {
     return m;
 }
 
+/// Indices of refraction of red, green and blue (KHR_materials_dispersion); `middle`: green's.
+vec3 channelIndices(float middle, float spread) { return max(vec3(1), middle + vec3(-1, 0, 1) * spread); }
+
 /// Index of refraction of the volume of a material for a ray of this RAY_CHANNEL.
 float materialIndex(uint material, uint channel) {
     const float middle = materials[material].ior;
-    return dispersive && channel > 0u ? max(1.0, middle + (float(channel) - 2.0) * materials[material].spread) : middle;
+    return dispersive && channel > 0u ? channelIndices(middle, materials[material].spread)[channel - 1u] : middle;
 }
 
 /// Absorption inside the volume of a material.

@@ -30,6 +30,8 @@ namespace peelray {
 #define TEXTURE_DIFFUSE_TRANSMISSION 18
 #define TEXTURE_DIFFUSE_TRANSMISSION_COLOR 19
 #define TEXTURE_USES 20
+/// Does it give directions, which need the tangents? Else TextureFactors.
+#define TEXTURE_TURNS(use) ((use) == TEXTURE_NORMAL || (use) == TEXTURE_COAT_NORMAL || (use) == TEXTURE_ANISOTROPY)
 
 struct GpuMaterial {
     vec3 base_color;
@@ -72,7 +74,7 @@ SHARED_SIZE(GpuMaterial, 272);
 #define MATERIAL_COLORED 4u       // vertices have colours
 #define MATERIAL_SINGLE_SIDED 8u  // rays from behind pass
 #define MATERIAL_SCHLICK 16u      // reflectance between f0 and f90; else by the index of refraction
-#define MATERIAL_TEXTURED 32u     // by more than a base colour and a normal
+#define MATERIAL_TEXTURED 32u     // by more than a base colour and what TEXTURE_TURNS
 #define MATERIAL_BLENDED 64u      // covers what is behind it by its alpha only
 /// Of all materials of a scene:
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's

@@ -47,6 +47,8 @@ uint keptCone(vec2 cone) { return filtered ? packCone(cone) : 0u; }
 // Defined by the shader that includes this.
 /// Does microfacet() sample rough surfaces? Else it is the normal, and one direction stands for all of the lobe.
 bool samplesMicrofacets();
+/// Does it sample this lobe?
+bool isSampled(Lobe lobe) { return samplesMicrofacets() && !isMirror(lobe); }
 /// The half vector of a lobe's reflection; `purpose`: RANDOM_*.
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose);
 /// Part of the rough lobe that is traced; the rest sees the blurred environment.
@@ -93,7 +95,7 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
     const Lobe lobe = roundLobe(s.coat_normal, m.coat_roughness);
     const vec3 h = microfacet(lobe, view, state.seed, RANDOM_COAT), reflected = reflect(incoming, h);
     float weight = share;
-    if (samplesMicrofacets() && !isMirror(lobe))
+    if (isSampled(lobe))
         weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * masking(lobe, reflected);
     Branch coat = branchAlong(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(isMirror(lobe) ? 0u : RAY_SEES_SUN),
                               keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
@@ -117,8 +119,7 @@ struct Facet {
 
 /// `incoming` as the microfacet of a thin wall lets it through: as often to this side of the straight way as the other face lets it.
 vec3 throughThin(Lobe lobe, vec3 incoming, vec3 reflected) {
-    if (!samplesMicrofacets() || isMirror(lobe)) return incoming;
-    return reflected - 2.0 * dot(reflected, lobe.normal) * lobe.normal;
+    return isSampled(lobe) ? reflect(reflected, lobe.normal) : incoming;
 }
 
 Facet facetOf(Surface s, Material m, Lobe lobe, vec3 incoming, Interface face, uint seed) {
@@ -209,7 +210,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     const Facet facet = facetOf(s, m, lobe, incoming, face, state.seed);
     vec3 reflected, through;
     sharesOf(facet, m, face, s.base_color, lobe, view, reflected, through);
-    const float below = sheened ? belowSheen(m, dot(view, s.normal)) : 1.0;
+    const float below = belowSheen(m, dot(view, s.normal));
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = isMirror(lobe) ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
@@ -224,8 +225,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & (RAY_PASSES | RAY_CHANNEL));
         const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
-        const bool blurred = thin && samplesMicrofacets() && !isMirror(lobe);
-        const vec3 direction = blurred ? -aboveSurface(-facet.through, s.geometric) : facet.through;
+        const vec3 direction = thin && isSampled(lobe) ? -aboveSurface(-facet.through, s.geometric) : facet.through;
         refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION);
         decide(refraction, state, false);
         disperse(facet, face, incoming, channelOf(state.medium), refraction);

@@ -88,7 +88,7 @@ Interface interfaceInAir(Material m, bool front, uint channel) {
     const bool leaving = leavesVolume(m, front);
     vec3 indices = vec3(m.ior);
     if (dispersive && (m.flags & MATERIAL_THIN) == 0u) {
-        indices = max(vec3(1), m.ior + vec3(-1, 0, 1) * m.spread);
+        indices = channelIndices(m.ior, m.spread);
         if (channel > 0u) indices = vec3(indices[channel - 1u]);
     }
     return interfaceOf(leaving ? 1.0 / indices : indices, leaving, false);

@@ -50,7 +50,7 @@ Shade shadeOf(Surface s, Material m, vec3 view) {
         shade.diffuse *= 1.0 - m.seeping_share;
     }
     shade.below_coat = 1.0 - coatShare(m, dot(view, s.coat_normal));
-    shade.below_sheen = sheened ? belowSheen(m, cosine) : 1.0;
+    shade.below_sheen = belowSheen(m, cosine);
     return shade;
 }
 
@@ -73,7 +73,7 @@ vec3 glassGain(Material m, Interface face, Lobe lobe, vec3 view, vec3 to_light, 
     vec3 through;
     bool passes = true;
     if ((m.flags & MATERIAL_THIN) != 0u)
-        through = to_light - 2.0 * dot(to_light, lobe.normal) * lobe.normal;
+        through = reflect(to_light, lobe.normal);
     else
         passes = refractRay(-view, h, face.eta, through);
     return 1.0 / max(reflectance * masking(lobe, to_light) + (1.0 - reflectance) * (passes ? masking(lobe, -through) : 0.0), vec3(1e-6));

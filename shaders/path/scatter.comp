@@ -54,7 +54,7 @@ bool samplesMicrofacets() { return frame[0].spp > 1u; }
 
 /// The half vector: the mean one for mirrors and with one sample per pixel, else a sample of the visible normals.
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) {
-    if (!samplesMicrofacets() || isMirror(lobe)) return meanMicrofacet(lobe, view);
+    if (!isSampled(lobe)) return meanMicrofacet(lobe, view);
     return sampleMicrofacet(lobe, view, randomPair(seed, params.sample_index, purpose));
 }
 

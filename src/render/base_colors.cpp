@@ -237,8 +237,7 @@ BaseColorBuffers upload_base_colors(Device& device, Commands& commands, const Sc
             m.channels[k >> 4] |= use.channel << 2 * (k & 15);
             if (m.textures[k] < 0 || k == TEXTURE_BASE_COLOR) continue;
             out.kinds |= MATERIALS_TEXTURED;
-            if (k != TEXTURE_NORMAL && k != TEXTURE_COAT_NORMAL && k != TEXTURE_ANISOTROPY)
-                m.flags |= MATERIAL_TEXTURED;
+            if (!TEXTURE_TURNS(k)) m.flags |= MATERIAL_TEXTURED;
         }
         if (used[i]) out.kinds |= material_kinds(material, m);
         materials.push_back(m);

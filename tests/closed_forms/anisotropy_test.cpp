@@ -74,11 +74,6 @@ struct TwoWidths {
 
 const glm::dvec3 kToSun = glm::normalize(glm::dvec3(-0.4, 0.35, 1));
 
-/// To a viewer on the right, at this cosine to the square's normal.
-glm::dvec3 direction_at(double cosine) {
-    return {std::sqrt(1 - cosine * cosine), 0, cosine};
-}
-
 TEST_F(AnisotropyTest, HighlightsAreStretched) {
     for (const double roughness : {0.0, 0.5})
         for (const double anisotropy : {0.4, 0.9})
@@ -88,9 +83,9 @@ TEST_F(AnisotropyTest, HighlightsAreStretched) {
                 stage.add(brushed_square(), brushed(roughness, anisotropy, rotation));
                 stage.sun(-kToSun, glm::vec3(1));
                 for (const double cosine : {0.9, 0.5}) {
-                    const double want = lobe.lobe(direction_at(cosine), kToSun);
+                    const double want = lobe.lobe(to_slanted(cosine), kToSun);
                     const double kept =
-                        ggx_mean(cosine, lobe.mean_roughness(direction_at(cosine)), [](double) { return 1; });
+                        ggx_mean(cosine, lobe.mean_roughness(to_slanted(cosine)), [](double) { return 1; });
                     for (const bool compensated : {true, false}) {
                         RenderSettings settings = settings_for(slanted(cosine), 2);
                         settings.energy_compensation = compensated;
@@ -143,8 +138,8 @@ TEST_F(AnisotropyTest, SamplesFollowTheLobe) {
             stage.add(brushed_square(), brushed(0.3, 0.7, rotation));
             RenderSettings settings = settings_for(slanted(cosine), 8);
             settings.spp = 64;
-            const double kept = lobe.kept(direction_at(cosine)),
-                         round = ggx_mean(cosine, lobe.mean_roughness(direction_at(cosine)), [](double) { return 1; });
+            const double kept = lobe.kept(to_slanted(cosine)),
+                         round = ggx_mean(cosine, lobe.mean_roughness(to_slanted(cosine)), [](double) { return 1; });
             for (const bool compensated : {true, false}) {
                 settings.energy_compensation = compensated;
                 EXPECT_NEAR(mean_radiance(render(stage, white, settings)).x, kept / (compensated ? round : 1), 5e-3)
@@ -171,7 +166,7 @@ TEST_F(AnisotropyTest, BrushedGlassLosesNothing) {
 TEST_F(AnisotropyTest, OneSampleLooksWhereTheStreakComesFrom) {
     // The normal turns towards the viewer, across the lobe.
     const double roughness = 0.1, anisotropy = 0.3, cosine = 0.6;
-    const glm::dvec3 view = direction_at(cosine), normal(0, 0, 1);
+    const glm::dvec3 view = to_slanted(cosine), normal(0, 0, 1);
     for (const double rotation : {0.0, kPi / 2, 0.8}) {
         const glm::dvec3 across(-std::sin(rotation), std::cos(rotation), 0);
         const glm::dvec3 facing = glm::normalize(view - glm::dot(view, across) * across);

@@ -103,24 +103,16 @@ TEST_F(EnergyTest, DielectricIsCompensatedByItsReflectanceStraightOn) {
     }
 }
 
-/// GGX's lobe times the cosine, without Fresnel; all unit, z the normal.
-double lobe_of(const glm::dvec3& view, const glm::dvec3& to_light, double roughness) {
-    const double alpha = roughness * roughness, a2 = alpha * alpha;
-    const double h = glm::normalize(view + to_light).z, k = h * h * (a2 - 1) + 1;
-    const auto masking = [&](double c) { return 2 / (1 + std::sqrt(1 + a2 * (1 / (c * c) - 1))); };
-    return a2 / (kPi * k * k) * masking(view.z) * masking(to_light.z) / (4 * view.z);
-}
-
 TEST_F(EnergyTest, HighlightsAreCompensatedAlike) {
     const double roughness = 0.6, cosine = 0.7, f0 = 0.8;
     Material m = metal("grey", glm::vec3(float(f0)));
     m.roughness = float(roughness);
     Stage stage;
     stage.add(texture_square(), m);
-    const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine), to_sun = glm::normalize(glm::dvec3(-0.3, 0.4, 1));
+    const glm::dvec3 view = to_slanted(cosine), to_sun = glm::normalize(glm::dvec3(-0.3, 0.4, 1));
     stage.sun(-to_sun, glm::vec3(2));
     const double v_h = glm::dot(view, glm::normalize(view + to_sun));
-    const double want = 2 * schlick(f0, 1, v_h) * lobe_of(view, to_sun, roughness);
+    const double want = 2 * schlick(f0, 1, v_h) * ggx_lobe(view, to_sun, roughness);
     for (const bool compensated : {true, false}) {
         RenderSettings settings = settings_for(slanted(cosine), 8);
         settings.energy_compensation = compensated;
@@ -130,9 +122,8 @@ TEST_F(EnergyTest, HighlightsAreCompensatedAlike) {
 }
 
 TEST_F(EnergyTest, HighlightsOnGlassTakeTheirShareOfWhatIsKept) {
-    const double roughness = 0.5, cosine = 0.7, alpha = roughness * roughness;
-    const auto masking = [&](double c) { return 2 / (1 + std::sqrt(1 + alpha * alpha * (1 / (c * c) - 1))); };
-    const glm::dvec3 view(std::sqrt(1 - cosine * cosine), 0, cosine), to_sun = glm::normalize(glm::dvec3(-0.9, 0.4, 1));
+    const double roughness = 0.5, cosine = 0.7;
+    const glm::dvec3 view = to_slanted(cosine), to_sun = glm::normalize(glm::dvec3(-0.9, 0.4, 1));
     const glm::dvec3 half = glm::normalize(view + to_sun);
     const double v_h = glm::dot(view, half), face = fresnel(v_h, 1, 1.5);
     // Snell's law in vectors.
@@ -144,15 +135,15 @@ TEST_F(EnergyTest, HighlightsOnGlassTakeTheirShareOfWhatIsKept) {
         stage.add(thin ? texture_square() : box({-1, -1, -0.5f}, {1, 1, 0}), m);
         stage.sun(-to_sun, glm::vec3(2));
         const double reflected = thin ? 2 * face / (1 + face) : face;  // of both faces
-        const double onward = masking(thin ? to_sun.z : -refracted.z);
-        const double kept = reflected * masking(to_sun.z) + (1 - reflected) * onward;
+        const double onward = smith_masking(thin ? to_sun.z : -refracted.z, roughness);
+        const double kept = reflected * smith_masking(to_sun.z, roughness) + (1 - reflected) * onward;
         for (const bool compensated : {true, false}) {
             RenderSettings settings = settings_for(slanted(cosine), 8);
             settings.spp = 4;
             settings.refraction = settings.shadow = false;  // the front alone
             settings.energy_compensation = compensated;
             EXPECT_NEAR(mean_radiance(render(stage, black, settings)).y,
-                        2 * reflected * lobe_of(view, to_sun, roughness) / (compensated ? kept : 1), 1e-3)
+                        2 * reflected * ggx_lobe(view, to_sun, roughness) / (compensated ? kept : 1), 1e-3)
                 << "thin " << thin << ", compensated " << compensated;
         }
     }

@@ -239,6 +239,19 @@ inline Camera orthographic(const glm::vec3& eye, const glm::vec3& look, float he
 inline Camera slanted(double cosine) {
     return orthographic({float(4 * std::sqrt(1 - cosine * cosine)), 0, float(4 * cosine)}, {0, 0, 0}, 0.3f);
 }
+/// Where that viewer is.
+inline glm::dvec3 to_slanted(double cosine) {
+    return {std::sqrt(1 - cosine * cosine), 0, cosine};
+}
+/// Smith's masking of a direction at this cosine to a GGX surface.
+inline double smith_masking(double cosine, double roughness) {
+    return 2 / (1 + std::sqrt(1 + std::pow(roughness, 4) * (1 / (cosine * cosine) - 1)));
+}
+/// What GGX sends from a light to a viewer, times the cosine, without Fresnel; the normal is +z.
+inline double ggx_lobe(const glm::dvec3& view, const glm::dvec3& to_light, double roughness) {
+    const double a2 = std::pow(roughness, 4), h = glm::normalize(view + to_light).z, k = h * h * (a2 - 1) + 1;
+    return a2 / (kPi * k * k) * smith_masking(view.z, roughness) * smith_masking(to_light.z, roughness) / (4 * view.z);
+}
 /// Sees `height` of the world around the origin from above; the picture's top is -z, its right +x.
 inline Camera from_above(float height) {
     return orthographic({0, 8, 0}, {0, 0, 0}, height, {0, 0, -1});

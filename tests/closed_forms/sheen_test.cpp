@@ -36,10 +36,6 @@ double fibres(double roughness, const glm::dvec3& view, const glm::dvec3& to_lig
            ((1 + lambda(view.z) + lambda(to_light.z)) * 4 * view.z * to_light.z);
 }
 
-glm::dvec3 upwards(double cosine) {
-    return {std::sqrt(1 - cosine * cosine), 0, cosine};
-}
-
 /// Of light from everywhere: by the angle to the normal and around it.
 double fibre_albedo(double roughness, double cosine) {
     const int rings = 300, sectors = 60;
@@ -49,7 +45,7 @@ double fibre_albedo(double roughness, double cosine) {
         for (int k = 0; k < sectors; k++) {
             const double around = (k + 0.5) / sectors * kPi;
             const glm::dvec3 l(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle));
-            sum += fibres(roughness, upwards(cosine), l) * l.z * std::sin(angle);
+            sum += fibres(roughness, to_slanted(cosine), l) * l.z * std::sin(angle);
         }
     }
     return std::min(1.0, sum * kPi * kPi / (rings * sectors));
@@ -87,7 +83,7 @@ TEST_F(SheenTest, NothingIsLostOrMadeUp) {
 TEST_F(SheenTest, LampsAreReflectedByTheFibres) {
     for (const double roughness : {0.1, 0.5, 1.0})
         for (const double cosine : {0.9, 0.3}) {
-            const glm::dvec3 view = upwards(cosine), to_sun = glm::normalize(glm::dvec3(0.9, 0.6, 0.5));
+            const glm::dvec3 view = to_slanted(cosine), to_sun = glm::normalize(glm::dvec3(0.9, 0.6, 0.5));
             const glm::dvec3 color(0.9, 0.5, 0.2);
             const double left = 1 - 0.9 * std::max(fibre_albedo(roughness, cosine), fibre_albedo(roughness, to_sun.z));
             const glm::dvec3 want = 2 * to_sun.z * (left * 0.5 / kPi + color * fibres(roughness, view, to_sun));
