@@ -108,6 +108,7 @@ Environment sky_environment(const glm::vec3& sun_direction) {
     sky.sun_cosine = std::cos(radius);
     sky.sun_radiance = irradiance / (kPi * radius * radius);
     sky.lights.push_back(sun_light(sun_direction, irradiance));
+    sky.lights.back().radius = radius;
     return sky;
 }
 
@@ -123,6 +124,7 @@ Environment color_environment(const glm::vec3& radiance) {
 
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels) {
     Environment environment;
+    environment.is_image = true;
     environment.width = width;
     environment.height = height;
     environment.texels.assign(pixels.begin(), pixels.end());

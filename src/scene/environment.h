@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/light_distribution.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -23,6 +24,8 @@ struct Environment {
     float sun_cosine = 2;              ///< cosine of the disc's angular radius; 2: no disc
     float rough_limit = 1e30f;  ///< radiance above this belongs to `lights`: rays after a rough surface see no more
     std::vector<Light> lights;  ///< directional lights that stand for the sun or the image's brightest spot
+    bool is_image = false;      ///< of which `lights` stand for a part; else they add to the texels
+    EnvironmentDistribution distribution;  ///< of the texels; empty unless EnvironmentMode::sampled
 };
 
 /// A clear sky over grey ground with the sun at `sun_direction` (unit, to the sun). Made for pleasant pictures, not for

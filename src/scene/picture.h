@@ -26,6 +26,8 @@ struct PictureSettings {
     std::optional<Box> bounds;
     uint32_t bounces = 4;                                      ///< secondary rays in a row, 0 to 16
     uint32_t spp = 1;                                          ///< samples per pixel, at least 1
+    uint32_t seed = 0;                                         ///< of the random numbers
+    EnvironmentMode env_mode = EnvironmentMode::open;
     bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
     bool ambient = false;             ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
     bool energy_compensation = true;  ///< light that rough surfaces scatter several times is not lost (Turquin, 2019)
@@ -78,6 +80,11 @@ struct Picture {
     Aovs aovs;
     RayCounts rays;
 };
+
+/// Do samples of rough lobes, rather than their means, make the picture?
+inline bool is_sampled(const PictureSettings& settings) {
+    return settings.spp > 1 || settings.env_mode == EnvironmentMode::sampled;
+}
 
 /// The last level of the tree of rays: bounces, and the blended surfaces that a path goes straight through.
 uint32_t last_level(const PictureSettings& settings, bool has_blended);

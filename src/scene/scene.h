@@ -208,6 +208,7 @@ struct Light {
     glm::vec3 direction{0, -1, 0};  ///< unit, the direction in which the light travels
     float range = std::numeric_limits<float>::infinity();  ///< metres, point and spot only
     float inner_cone = 0, outer_cone = 0.785398f;          ///< spot: half angles, radians
+    float radius = 0;  ///< of its ball, world units; directional: of its disc, radians. Several samples see it soften
 };
 
 struct Node {

@@ -104,6 +104,16 @@ constexpr auto names_of(Tonemap) {
         {{Tonemap::none, "none"}, {Tonemap::aces, "aces"}, {Tonemap::neutral, "neutral"}});
 }
 
+/// How surfaces that are no mirrors find the environment's light.
+enum class EnvironmentMode : uint8_t {
+    sampled,  ///< rays in directions drawn by its brightness and by the surface's lobes: unbiased
+    open,     ///< smooth approximations without noise, as if nothing stood in the way
+};
+constexpr auto names_of(EnvironmentMode) {
+    return std::to_array<Named<EnvironmentMode>>(
+        {{EnvironmentMode::sampled, "sampled"}, {EnvironmentMode::open, "open"}});
+}
+
 /// What every surface of a scene can be made of instead.
 enum class MaterialOverride : uint8_t { mirror, glass, clay };
 constexpr auto names_of(MaterialOverride) {

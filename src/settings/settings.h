@@ -82,7 +82,8 @@ struct LightArguments {
     std::string env;
     bool sky = false;
     std::optional<glm::vec3> background;
-    float exposure = 0;  ///< stops
+    std::optional<EnvironmentMode> env_mode;  ///< none: sampled where it is an image
+    float exposure = 0;                       ///< stops
     Tonemap tonemap = Tonemap::neutral;
 };
 
@@ -107,6 +108,12 @@ inline void add_light(SettingList& list, LightArguments& a) {
                             .fault = "a background cannot be darker than black",
                             .choose = "three numbers from 0 up"},
                  .excludes = {"env", "sky"}});
+    add_setting(list, a.env_mode,
+                {.name = "env-mode",
+                 .group = group,
+                 .help = "how the environment lights what is no mirror: by sampling where it is bright, behind what is "
+                         "in the way; or as if nothing were, without noise; auto: images and the studio are sampled",
+                 .none = "auto"});
     add_setting(
         list, a.exposure,
         {.name = "exposure",
@@ -236,7 +243,7 @@ inline void add_scene(SettingList& list, SceneArguments& a) {
 /// What is traced, and of what.
 struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
-    uint32_t bounces = 4, spp = 1;
+    uint32_t bounces = 4, spp = 1, seed = 0;
     std::optional<MaterialOverride> material;
     bool floor = false;
     bool no_energy_compensation = false;
@@ -267,6 +274,10 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                  .group = group,
                  .help = "samples per pixel: smooth edges and rough reflections",
                  .limits = kSampleLimits});
+    add_setting(list, a.seed,
+                {.name = "seed",
+                 .group = group,
+                 .help = "of the random numbers: other values give other noise, with the same mean"});
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});

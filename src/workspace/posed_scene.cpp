@@ -75,6 +75,8 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     if (settings.frame_moment) frame_moment();
     camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
     environment_ = choose_environment(settings, *scene_, notes);
+    env_mode_ = settings.env_mode.value_or(environment_.is_image ? EnvironmentMode::sampled : EnvironmentMode::open);
+    if (env_mode_ == EnvironmentMode::sampled) environment_.distribution = EnvironmentDistribution(environment_);
 }
 
 const Geometry& PosedScene::geometry() {

@@ -27,6 +27,8 @@ class PosedScene {
     const Moment& moment() const { return moment_; }
     const Camera& camera() const { return camera_; }
     const Environment& environment() const { return environment_; }
+    /// How it lights; with `sampled` it has a distribution.
+    EnvironmentMode env_mode() const { return env_mode_; }
     /// The one that moves the scene, see moment_of(); empty: it stands at rest.
     const std::string& animation() const { return animation_; }
     /// Of the moment, in the animation; none: at rest.
@@ -80,6 +82,7 @@ class PosedScene {
     uint64_t triangles_ = 0;
     Camera camera_;
     Environment environment_;
+    EnvironmentMode env_mode_ = EnvironmentMode::open;
 };
 
 /// The scene's triangles. Notes what is left out of the scene; throws Error if nothing can be hit, unless that is but

@@ -28,6 +28,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;
     settings.spp = a.spp;
+    settings.seed = a.seed;
     settings.repeat = a.repeat;
     settings.rebuild = a.rebuild;
     settings.visibility = a.visibility;

@@ -50,6 +50,7 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
     if (shot.time) scene_.move_to(*shot.time);
     settings.camera = turned(scene_.camera(), shot.turn);
     settings.bounds = scene_.bounds();
+    settings.env_mode = scene_.env_mode();
     const std::optional<PosedScene::Glimpse> before = look_back(settings, shot);
     settings.moment_before = before ? &before->moment : nullptr;
     const auto report = [&](double share) {
