@@ -14,8 +14,9 @@ struct RayState {
     uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_CHANNEL | RAY_PASSED for each surface | RAY_SEES_SUN
     uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
     uint cone;    ///< at the ray's start (cone.glsl)
+    float density;  ///< of its direction, per steradian, where the environment's light is also found otherwise; 0: it is not
 };
-SHARED_SIZE(RayState, 24);
+SHARED_SIZE(RayState, 28);
 #define MEDIUM_NONE 0x00ffffffu
 #define RAY_MEDIUM 0x00ffffffu
 #define RAY_CHANNEL 0x03000000u  // 0: all colours; 1, 2, 3 times RAY_CHANNEL_UNIT: red, green, blue alone (dispersion)

@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
@@ -37,7 +38,7 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
-#include "path/lighting.glsl"
+#include "path/environment_light.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
 #include "view/seen.glsl"
@@ -50,17 +51,37 @@ shared uint group_coats;      // of the refractions those that clear coats mirro
 shared uint group_first;
 shared uint group_first_light;
 
-bool samplesMicrofacets() { return frame[0].spp > 1u; }
+bool samplesMicrofacets() { return (frame[0].effects & EFFECT_SAMPLED) != 0u; }
+
+vec2 randomAt(uint seed, uint purpose) {
+    return randomPair(seed, params.level, params.sample_index, frame[0].sample_bits, purpose, frame[0].seed);
+}
+
+/// What rays of lobes bring counts by the balance heuristic, since light is also found otherwise. What sees a sharp image of the
+/// environment sees it filtered by its cone: the sun's disc in a curved coat would be noise.
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) {
+    if (!env_sampled) return environmentRadiance(direction, blur);
+    if (density == 0.0) return environmentAt(direction, environmentLevelOf(unpackCone(cone).y));
+    return environmentAt(direction, 0.0) * (density / (density + environmentDensity(direction)));
+}
+
+/// On a miss.
+vec3 skyAlong(Ray ray, RayState state) {
+    const bool sees_sun = (state.medium & RAY_SEES_SUN) != 0u;
+    if (!env_sampled) return skyRadiance(ray.direction, sees_sun);
+    return environmentSeen(ray.direction, 0.0, state.density, state.cone) + (sees_sun ? sunDisc(ray.direction) : vec3(0));
+}
 
 /// The half vector: the mean one for mirrors and with one sample per pixel, else a sample of the visible normals.
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) {
     if (!isSampled(lobe)) return meanMicrofacet(lobe, view);
-    return sampleMicrofacet(lobe, view, randomPair(seed, params.sample_index, purpose));
+    return sampleMicrofacet(lobe, view, randomAt(seed, purpose));
 }
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
 float tracedPart(float roughness, float metallic) {
-    if (frame[0].spp > 1u) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
+    if (env_sampled) return 1.0;
+    if (samplesMicrofacets()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, roughness);
 }
 
@@ -88,22 +109,30 @@ void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId f
     if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
-    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone);
+    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone, branch.density);
     next_skip[index] = from;
 }
 
-/// A ray to light `index`; `seeps`: from the surface's other side.
-Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
+/// A ray to a light far away that the surface faces; `seeps`: from its other side.
+Ray lightRay(Surface s, vec3 direction, bool seeps) {
     const float infinity = uintBitsToFloat(0x7f800000u);
-    Ray ray = seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
-    if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
+    return seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
+}
+
+/// The same to light `index`: to where the ray meets its ball.
+Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
+    Ray ray = lightRay(s, direction, seeps);
+    if (lights[index].kind == 0u) return ray;
+    const vec3 centre = lights[index].position - ray.origin;
+    const float radius = samplesMicrofacets() ? lights[index].sine : 0.0, along = dot(centre, direction);
+    ray.tmax = along - sqrt(max(0.0, radius * radius - (dot(centre, centre) - along * along)));
     return ray;
 }
 
 /// A ray to the sky in front of the surface or behind it. One cosine-distributed direction per sample: its mean is the sky that the
 /// surface really sees.
 Ray skyRay(Surface s, uint seed, bool seeps) {
-    const vec3 sampled = cosineDirection(s.normal, randomPair(seed, params.sample_index, RANDOM_SKY));
+    const vec3 sampled = cosineDirection(s.normal, randomAt(seed, RANDOM_SKY));
     const vec3 direction = aboveSurface(sampled, s.geometric);
     const float infinity = uintBitsToFloat(0x7f800000u);
     return seeps ? leavingRay(s, s.position, -direction, infinity) : leavingRay(s, s.shadow_start, direction, infinity);
@@ -117,29 +146,50 @@ void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light
     shadow_light[index] = light;
 }
 
-/// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
-vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, out vec3 direction) {
-    const vec3 light = lampLight(index, s, m, shade, view, direction);
-    if (light == vec3(0) || (frame[0].effects & EFFECT_SHADOW) == 0u || lightSeeps(s, shade, direction)) return light;
-    return blocksItself(s, from, direction) ? vec3(0) : light;
+/// Is the surface's own triangle `from` in the way of a light?
+bool isBlocked(Surface s, Shade shade, SurfaceId from, vec3 direction) {
+    return (frame[0].effects & EFFECT_SHADOW) != 0u && !lightSeeps(s, shade, direction) && blocksItself(s, from, direction);
 }
 
-/// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
-vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
+/// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
+vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, out vec3 direction) {
+    vec2 random = vec2(0);
+    const bool soft = samplesMicrofacets() && lights[index].sine > 0.0;
+    if (soft) random = randomAt(seed, RANDOM_LAMP + index);
+    const vec3 light = lampLight(index, s, m, shade, view, soft, random, direction);
+    return light == vec3(0) || !isBlocked(s, shade, from, direction) ? light : vec3(0);
+}
+
+/// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky; `found`: what one
+/// of them brings from the environment.
+vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, uint seed, out uint rays, out uint sky_rays, out LightSample found) {
     rays = sky_rays = 0u;
+    found = LightSample(vec3(0), vec3(0));
     // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
     if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0)
         return vec3(0);
     const Shade shade = shadeOf(s, m, view);
+    const bool shadowed = (frame[0].effects & EFFECT_SHADOW) != 0u;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
+        const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
         if (light == vec3(0)) continue;
-        if ((frame[0].effects & EFFECT_SHADOW) != 0u)
+        if (shadowed)
             rays++;
         else
             sum += light;
+    }
+    if (env_sampled) {
+        found = environmentLight(s, m, shade, view, randomAt(seed, RANDOM_ENVIRONMENT));
+        if (found.light == vec3(0) || isBlocked(s, shade, from, found.direction)) {
+            found.light = vec3(0);
+        } else if (shadowed) {
+            rays++;
+        } else {
+            sum += found.light;
+        }
+        return sum;
     }
     vec3 front, behind;
     skyLight(s, m, shade, view, front, behind);
@@ -151,17 +201,22 @@ vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint 
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSample found, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
     if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
-    if ((frame[0].effects & EFFECT_SHADOW) != 0u)
+    if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
-            const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
+            const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
             const bool seeps = lightSeeps(s, shade, direction);
             if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, seeps), seeps ? behind : before, from, light * share);
         }
-    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
+        if (env_sampled && found.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.direction);
+            emitLight(slot, lightRay(s, found.direction, seeps), seeps ? behind : before, from, found.light * share);
+        }
+    }
+    if (env_sampled || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     vec3 front, back;
     skyLight(s, m, shade, view, front, back);
     if (front != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, front * share);
@@ -204,6 +259,7 @@ struct Scattering {
     Branch reflection, refraction;
     uint reflection_slot, refraction_slot, light_slot;  ///< among the rays of the workgroup
     uint light_rays;
+    LightSample found;          ///< of the environment
     MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
@@ -263,7 +319,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if ((m.flags & MATERIAL_UNLIT) != 0u)
         c.node.flags |= NODE_UNLIT;
     else
-        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, state.seed, c.light_rays, sky_rays, c.found);
     c.node.radiance *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
@@ -290,11 +346,11 @@ void emitBranches(uint i, Scattering c, uint seed) {
     PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
     if (c.reflection.traced) {
         children.child0 = group_first + c.reflection_slot;
-        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, hash3(uvec3(seed, 0u, params.level)).x);
+        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, branchSeed(seed, 0u, params.level));
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        const uint next_seed = hash3(uvec3(seed, 1u, params.level)).x;
+        const uint next_seed = branchSeed(seed, 1u, params.level);
         if (dispersive && c.refraction.dispersed)
             emitDispersed(children.child1, c, next_seed);
         else
@@ -318,7 +374,8 @@ void main() {
     c.reflection = c.refraction = NO_BRANCH;
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
-    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+    c.found = LightSample(vec3(0), vec3(0));
+    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyAlong(ray, state);
     if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
     if (valid && hit.triangle != NO_TRIANGLE) {
         c.from = SurfaceId(hit.instance, hit.triangle);
@@ -336,7 +393,7 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.before, c.behind, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "base/error.h"
@@ -173,7 +174,7 @@ void Renderer::Impl::prepare_view() {
     f.last_level = f.tracer->traces() ? last_level(settings, f.scene.has_blended) : 0;
     box = settings.bounds ? *settings.bounds : bounds(source, moment);
     Frame& frame = f.constants = {};
-    f.scene.describe(frame);
+    f.scene.describe(frame, f.env_sampled());
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper),
                   settings.height, settings.spp);
@@ -191,8 +192,10 @@ void Renderer::Impl::prepare_view() {
     frame.row_pixels = f.bands.row_pixels();
     const bool maps = f.maps != nullptr;
     frame.effects = (f.tracer->traces() || maps ? effects_of(settings, maps) : 0) |
-                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u);
-    frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
+                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u) |
+                    (is_sampled(settings) && !maps ? EFFECT_SAMPLED : 0u);  // a blurred cube map is all of a rough lobe
+    frame.sample_bits = uint32_t(std::bit_width(settings.spp - 1));
+    frame.seed = settings.seed;
     frame.bounces = settings.bounces;
     frame.last_level = f.last_level;
     f.commands.upload(f.view.target.frame, std::span<const Frame>(&frame, 1));
