@@ -204,6 +204,13 @@ void disperse(Facet f, Interface face, vec3 incoming, uint channel, inout Branch
     if (!refractRay(incoming, f.normal, face.etas.b, refraction.blue)) refraction.blue = refraction.direction;
 }
 
+/// RayState::medium of a ray that goes on behind the surface; `medium`: of one before it.
+uint mediumBehind(Surface s, Material m, uint medium) {
+    medium &= ~RAY_SEES_SUN;
+    if (!transmits(m) || (m.flags & MATERIAL_THIN) != 0u) return medium;
+    return (s.front ? s.material : MEDIUM_NONE) | (medium & (RAY_PASSES | RAY_CHANNEL));
+}
+
 /// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
 vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
@@ -233,7 +240,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
 
     if (transparent && facet.passes) {
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-        const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & (RAY_PASSES | RAY_CHANNEL));
+        const uint inside = mediumBehind(s, m, medium);
         const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
         const vec3 direction = thin && isSampled(lobe) ? -aboveSurface(-facet.through, s.geometric) : facet.through;
         refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION,

@@ -31,22 +31,36 @@ vec3 lobeLight(Surface s, Material m, Shade shade, vec3 view, vec3 to_light, flo
     return sum + coatHighlight(s, m, view, to_light, h) / (density + lobeDensity(coat, view, h));
 }
 
+/// Does the surface send light into all directions?
+bool scattersLight(Material m) { return (m.metallic < 1.0 && m.transmission < 1.0) || (sheened && m.sheen_color != vec3(0)); }
+
+/// Share of the directions that scatteredDirection() takes behind the surface.
+float shareBehind(Material m) { return seeping && m.metallic < 1.0 && m.transmission < 1.0 ? m.seeping_share : 0.0; }
+
+/// A direction into which a surface scatters light, by the cosine; `random` in [0, 1).
+vec3 scatteredDirection(Surface s, float behind, vec2 random) {
+    const bool back = behind > 0.0 && takePart(random.x, behind);
+    const vec3 direction = cosineDirection(s.normal, random);
+    return back ? -direction : direction;
+}
+
+/// Its density per steradian.
+float scatteredDensity(Surface s, float behind, vec3 direction) {
+    const float cosine = dot(s.normal, direction);
+    return (cosine > 0.0 ? 1.0 - behind : behind) * abs(cosine) / PI;
+}
+
 /// `random` in [0, 1).
 LightSample environmentLight(Surface s, Material m, Shade shade, vec3 view, vec2 random) {
-    const bool diffuse = m.metallic < 1.0 && m.transmission < 1.0, scatters = diffuse || (sheened && m.sheen_color != vec3(0));
-    const float by_light = scatters ? 0.5 : 1.0, behind = seeping && diffuse ? m.seeping_share : 0.0;
+    const bool scatters = scattersLight(m);
+    const float by_light = scatters ? 0.5 : 1.0, behind = shareBehind(m);
     LightSample result;
     const bool found = !scatters || takePart(random.x, by_light);
-    if (found) {
-        result.direction = environmentDirection(random);
-    } else {
-        const bool back = behind > 0.0 && takePart(random.x, behind);
-        result.direction = cosineDirection(s.normal, random);
-        if (back) result.direction = -result.direction;
-    }
-    const float cosine = dot(s.normal, result.direction), density = environmentDensity(result.direction);
-    const float scattered = (cosine > 0.0 ? 1.0 - behind : behind) * abs(cosine) / PI;
-    vec3 share = scatters ? scatteredShare(s, m, shade, view, result.direction) / mix(scattered, density, by_light) : vec3(0);
+    result.direction = found ? environmentDirection(random) : scatteredDirection(s, behind, random);
+    const float density = environmentDensity(result.direction);
+    vec3 share = vec3(0);
+    if (scatters)
+        share = scatteredShare(s, m, shade, view, result.direction) / mix(scatteredDensity(s, behind, result.direction), density, by_light);
     if (found) share += lobeLight(s, m, shade, view, result.direction, density) / by_light;
     result.light = share == vec3(0) ? vec3(0) : share * environmentRadiance(result.direction, 0.0);
     return result;

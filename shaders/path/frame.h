@@ -51,7 +51,9 @@ struct Frame {
     uint env_depth;    ///< of its trees
     float env_texels;  ///< of its image per radian; 0: its levels are no means of texels
     uint bounces;       ///< reflections and refractions in a row
-    uint last_level;    ///< level whose hits spawn no more rays: bounces, and as many blended surfaces as are passed
+    uint bounce_levels;  ///< bounces, and as many blended surfaces as are passed
+    uint gi;            ///< diffuse bounces
+    uint last_level;    ///< level whose hits spawn no more rays: the sum of both
     float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
@@ -59,7 +61,7 @@ struct Frame {
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 336);
+SHARED_SIZE(Frame, 344);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

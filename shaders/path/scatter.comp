@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
 layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
@@ -45,7 +46,7 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "view/camera_start.glsl"
 #include "common/last_group.glsl"
 
-shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
+shared uint group_counts[5];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's; diffuse
 shared uint group_cut[2];     // reflection, refraction that the last level cuts off
 shared uint group_coats;      // of the refractions those that clear coats mirror
 shared uint group_first;
@@ -61,6 +62,7 @@ vec2 randomAt(uint seed, uint purpose) {
 /// environment sees it filtered by its cone: the sun's disc in a curved coat would be noise.
 vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) {
     if (!env_sampled) return environmentRadiance(direction, blur);
+    if (indirect && density < 0.0) return vec3(0);
     if (density == 0.0) return environmentAt(direction, environmentLevelOf(unpackCone(cone).y));
     return environmentAt(direction, 0.0) * (density / (density + environmentDensity(direction)));
 }
@@ -85,10 +87,12 @@ float tracedPart(float roughness, float metallic) {
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, roughness);
 }
 
-/// Has the ray come as far as it is followed? Without blended surfaces its level is its bounces.
-bool isLast(uint medium, bool passes) {
-    if (!blended || passes) return params.level >= frame[0].last_level;
-    return params.level >= min(frame[0].last_level, frame[0].bounces + (medium & RAY_PASSES) / RAY_PASSED);
+/// Has the ray come as far as it is followed? Without blended surfaces and diffuse bounces its level is its bounces.
+bool isLast(RayState state, bool passes) {
+    if (indirect && params.level >= frame[0].last_level) return true;
+    const uint levels = params.level - (indirect ? state.scattered : 0u);
+    if (!blended || passes) return levels >= frame[0].bounce_levels;
+    return levels >= min(frame[0].bounce_levels, frame[0].bounces + (state.medium & RAY_PASSES) / RAY_PASSED);
 }
 
 /// Is it bright enough, and its effect on?
@@ -96,20 +100,20 @@ bool isWanted(Branch branch, RayState state) {
     return (frame[0].effects & branch.effect) != 0u && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 
-void decide(inout Branch branch, RayState state, bool passes) { branch.traced = isWanted(branch, state) && !isLast(state.medium, passes); }
+void decide(inout Branch branch, RayState state, bool passes) { branch.traced = isWanted(branch, state) && !isLast(state, passes); }
 
 /// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
 bool isCut(Branch branch, RayState state, bool passes) {
-    return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state.medium, passes);
+    return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state, passes);
 }
 
-/// `path_weight`: of the pixel's light that comes along the new ray.
-void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
+/// `path_weight`: of the pixel's light that comes along the new ray; `scattered`: diffuse bounces up to it.
+void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed, uint scattered) {
     if (index >= params.next_capacity) return;
     if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
-    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone, branch.density);
+    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone, branch.density, scattered);
     next_skip[index] = from;
 }
 
@@ -160,15 +164,33 @@ vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, Su
     return light == vec3(0) || !isBlocked(s, shade, from, direction) ? light : vec3(0);
 }
 
-/// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky; `found`: what one
-/// of them brings from the environment.
-vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, uint seed, out uint rays, out uint sky_rays, out LightSample found) {
+/// Has the surface neither a lobe that holds a lamp, nor anything that scatters, as mirrors and clear glass?
+bool ignoresLight(Surface s, Material m) {
+    return m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0;
+}
+
+/// One direction for the light that the surface scatters from all around. `inside`: medium behind the surface.
+Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState state, vec2 cone, uint inside) {
+    Branch branch = NO_BRANCH;
+    if (state.scattered >= frame[0].gi || params.level >= frame[0].last_level || !scattersLight(m)) return branch;
+    const float behind = shareBehind(m);
+    vec3 direction = scatteredDirection(s, behind, randomAt(state.seed, RANDOM_DIFFUSE));
+    const float density = scatteredDensity(s, behind, direction);
+    if (density <= 0.0) return branch;
+    const vec3 weight = scatteredShare(s, m, shade, view, direction) * (s.alpha / density);
+    const bool back = dot(s.normal, direction) < 0.0;
+    direction = back ? -aboveSurface(-direction, s.geometric) : aboveSurface(direction, s.geometric);
+    // What is scattered is blurred: it may show textures as coarse as that.
+    branch = branchAlong(weight, direction, back ? inside : state.medium & ~RAY_SEES_SUN, keptCone(vec2(cone.x, 1.0)), 0u, env_sampled ? -1.0 : 0.0);
+    branch.traced = largest(weight * state.weight) >= LEAST_WEIGHT;
+    return branch;
+}
+
+/// The light that no ray is to be traced for. `sky`: the sky's is wanted; `rays`: how many shadow rays the rest needs, of them `sky_rays`
+/// to the sky; `found`: what one of them brings from the environment.
+vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, bool sky, out uint rays, out uint sky_rays, out LightSample found) {
     rays = sky_rays = 0u;
     found = LightSample(vec3(0), vec3(0));
-    // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
-    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0)
-        return vec3(0);
-    const Shade shade = shadeOf(s, m, view);
     const bool shadowed = (frame[0].effects & EFFECT_SHADOW) != 0u;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
@@ -191,6 +213,7 @@ vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, uint seed
         }
         return sum;
     }
+    if (!sky) return sum;
     vec3 front, behind;
     skyLight(s, m, shade, view, front, behind);
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + front + behind;
@@ -201,7 +224,7 @@ vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, uint seed
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSample found, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSample found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
     if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
     if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
@@ -216,7 +239,7 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSa
             emitLight(slot, lightRay(s, found.direction, seeps), seeps ? behind : before, from, found.light * share);
         }
     }
-    if (env_sampled || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
+    if (env_sampled || !sky || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     vec3 front, back;
     skyLight(s, m, shade, view, front, back);
     if (front != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, front * share);
@@ -225,12 +248,13 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSa
 
 /// Makes room in the queues for the rays of the workgroup.
 void reserve() {
-    const uint rays = group_counts[0] + group_counts[1];
+    const uint diffuse = indirect ? group_counts[4] : 0u, rays = group_counts[0] + group_counts[1] + diffuse;
     if (rays > 0u) {
         group_first = atomicAdd(queue[params.level + 1u], rays);
         const uint coats = coated ? group_coats : 0u, reflections = group_counts[0] + coats, refractions = group_counts[1] - coats;
         if (reflections > 0u) atomicAdd(queue[QUEUE_REFLECTION], reflections);
         if (refractions > 0u) atomicAdd(queue[QUEUE_REFRACTION], refractions);
+        if (diffuse > 0u) atomicAdd(queue[QUEUE_DIFFUSE], diffuse);
         if (group_first + rays > params.next_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_PATHS);
     }
     if (group_cut[0] > 0u) atomicAdd(queue[QUEUE_CUT_REFLECTION], group_cut[0]);
@@ -256,8 +280,8 @@ struct Scattering {
     Surface surface;
     SurfaceId from;
     PathNode node;
-    Branch reflection, refraction;
-    uint reflection_slot, refraction_slot, light_slot;  ///< among the rays of the workgroup
+    Branch reflection, refraction, diffuse;
+    uint reflection_slot, refraction_slot, diffuse_slot, light_slot;  ///< among the rays of the workgroup
     uint light_rays;
     LightSample found;          ///< of the environment
     MediaStack before, behind;  ///< media on either side of the surface
@@ -316,52 +340,63 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if (!c.refraction.traced) c.node.radiance += untracedLight(c.refraction);
     uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
-    if ((m.flags & MATERIAL_UNLIT) != 0u)
+    if ((m.flags & MATERIAL_UNLIT) != 0u) {
         c.node.flags |= NODE_UNLIT;
-    else
-        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, state.seed, c.light_rays, sky_rays, c.found);
+    } else if (!ignoresLight(c.surface, m)) {
+        const Shade shade = shadeOf(c.surface, m, -ray.direction);
+        if (indirect) c.diffuse = diffuseBranch(c.surface, m, shade, -ray.direction, state, cone, mediumBehind(c.surface, m, state.medium));
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state.seed, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
+    }
     c.node.radiance *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], dispersive && c.refraction.dispersed ? 3u : 1u);
     if (coat && c.refraction.traced) atomicAdd(group_coats, 1u);
+    if (indirect && c.diffuse.traced) c.diffuse_slot = atomicAdd(group_counts[4], 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
     if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
 }
 
 /// The rays of red, green and blue, from `first` on.
-void emitDispersed(uint first, Scattering c, uint seed) {
+void emitDispersed(uint first, Scattering c, uint seed, uint scattered) {
     for (uint channel = 1u; channel <= 3u; channel++) {
         Branch one = c.refraction;
         one.direction = channel == 1u ? one.red : (channel == 2u ? one.direction : one.blue);
         one.medium += channel * RAY_CHANNEL_UNIT;
         const vec3 weight = c.path_weight * one.weight * vec3(equal(uvec3(channel), uvec3(1, 2, 3)));
-        emitRay(first + channel - 1u, one, c.behind, c.surface, c.from, weight, seed);
+        emitRay(first + channel - 1u, one, c.behind, c.surface, c.from, weight, seed, scattered);
     }
 }
 
 /// Puts the next level's rays into the room that reserve() made.
-void emitBranches(uint i, Scattering c, uint seed) {
-    PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
+void emitBranches(uint i, Scattering c, RayState state) {
+    PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD, vec3(0), NO_CHILD);
     if (c.reflection.traced) {
         children.child0 = group_first + c.reflection_slot;
-        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, branchSeed(seed, 0u, params.level));
+        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, branchSeed(state.seed, 0u, params.level), state.scattered);
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        const uint next_seed = branchSeed(seed, 1u, params.level);
+        const uint seed = branchSeed(state.seed, 1u, params.level);
         if (dispersive && c.refraction.dispersed)
-            emitDispersed(children.child1, c, next_seed);
+            emitDispersed(children.child1, c, seed, state.scattered);
         else
-            emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight * c.refraction.weight, next_seed);
+            emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight * c.refraction.weight, seed, state.scattered);
+    }
+    if (indirect && c.diffuse.traced) {
+        children.child2 = group_first + group_counts[0] + group_counts[1] + c.diffuse_slot;
+        children.weight2 = c.diffuse.weight * c.lost;
+        const bool back = dot(c.surface.normal, c.diffuse.direction) < 0.0 && transmits(materialOf(c.surface));
+        emitRay(children.child2, c.diffuse, back ? c.behind : c.before, c.surface, c.from, c.path_weight * c.diffuse.weight, branchSeed(state.seed, 2u, params.level),
+                state.scattered + 1u);
     }
     branches[i] = children;
 }
 
 void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
-    if (lane < 4u) group_counts[lane] = 0u;
+    if (lane < 5u) group_counts[lane] = 0u;
     if (lane < 2u) group_cut[lane] = 0u;
     if (coated && lane == 0u) group_coats = 0u;
     barrier();
@@ -371,7 +406,7 @@ void main() {
     const bool valid = startOf(i, ray, state, hit);
     Scattering c;
     c.node = PathNode(vec3(0), 0u, 0u);
-    c.reflection = c.refraction = NO_BRANCH;
+    c.reflection = c.refraction = c.diffuse = NO_BRANCH;
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
     c.found = LightSample(vec3(0), vec3(0));
@@ -385,15 +420,16 @@ void main() {
     if (lane == 0u) reserve();
     barrier();
     if (valid) {
-        if (c.reflection.traced || c.refraction.traced) {
+        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced)) {
             c.node.flags |= NODE_BRANCHES;
             if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
-            emitBranches(i, c, state.seed);
+            emitBranches(i, c, state);
         }
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, c.before, c.behind, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
+                       c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -79,6 +79,7 @@
 #define RANDOM_SKY 2
 #define RANDOM_COAT 3
 #define RANDOM_ENVIRONMENT 4
+#define RANDOM_DIFFUSE 5
 #define RANDOM_LAMP 16  // and the lamp's index
 
 // The seed of a path's random numbers: a code of the pixel above RANDOM_BRANCH_BITS that tell the branches taken.

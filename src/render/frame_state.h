@@ -44,6 +44,8 @@ struct FrameState {
     }
     /// Is the environment's light found by sampling? Cube maps hold it blurred.
     bool env_sampled() const { return settings.env_mode == EnvironmentMode::sampled && !maps; }
+    /// Are diffuse bounces followed?
+    bool indirect() const { return settings.gi > 0 && tracer->traces(); }
     /// Are rays traced that may be in several media at once?
     bool layered() const { return tracer->traces() && (scene.layered || constants.camera_media != glm::uvec2(0)); }
     uint64_t pixels() const { return uint64_t(settings.width) * settings.height; }

@@ -38,6 +38,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                                                  {"by_number", camera && f.view.by_number()},
                                                  {"layered", layered},
                                                  {"env_sampled", f.env_sampled()},
+                                                 {"indirect", f.indirect()},
                                                  {"material_kinds", kinds}});
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
