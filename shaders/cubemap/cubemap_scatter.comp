@@ -75,7 +75,7 @@ void main() {
         const Material m = materialOf(s);
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, reflection, refraction);
+        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, 1.0, reflection, refraction);
         radiance += seen(reflection, reflection.blur);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).

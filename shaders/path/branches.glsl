@@ -211,11 +211,11 @@ uint mediumBehind(Surface s, Material m, uint medium) {
     return (s.front ? s.material : MEDIUM_NONE) | (medium & (RAY_PASSES | RAY_CHANNEL));
 }
 
-/// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
-vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, out Branch reflection, out Branch refraction) {
+/// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit; `emission`: what of it counts.
+vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, float emission, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const Material m = materialOf(s);
-    vec3 radiance = m.emissive;
+    vec3 radiance = m.emissive * emission;
     if ((m.flags & MATERIAL_UNLIT) != 0u) {
         radiance = s.base_color;
         passBeside(s, incoming, state, cone, radiance, reflection, refraction);

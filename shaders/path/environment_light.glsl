@@ -19,16 +19,17 @@ bool takePart(inout float u, float part) {
     return taken;
 }
 
-/// Light of the environment by the lobes of base and coat, less what the rays that they send out find: over the density of directions.
+/// Light by the lobes of base and coat, less what the rays that they send out find: over the density of directions.
 vec3 lobeLight(Surface s, Material m, Shade shade, vec3 view, vec3 to_light, float density) {
-    if (sharesBranch(s, m)) return vec3(0);
+    if (sharesBranch(s, m) || !samplesMicrofacets()) return vec3(0);
     const vec3 h = normalize(view + to_light);
     vec3 sum = vec3(0);
     if (dot(s.normal, to_light) > 0.0)
-        sum = baseHighlight(s, m, shade, view, to_light, h) * (shade.below_sheen * shade.below_coat) / (density + lobeDensity(shade.lobe, view, h));
+        sum = baseHighlight(s, m, shade, view, to_light, h) * (shade.below_sheen * shade.below_coat) /
+              (density + tracedPart(shade.lobe.roughness, m.metallic) * lobeDensity(shade.lobe, view, h));
     if (!coated || m.clearcoat == 0.0) return sum;
     const Lobe coat = roundLobe(s.coat_normal, m.coat_roughness);
-    return sum + coatHighlight(s, m, view, to_light, h) / (density + lobeDensity(coat, view, h));
+    return sum + coatHighlight(s, m, view, to_light, h) / (density + tracedPart(m.coat_roughness, 0.0) * lobeDensity(coat, view, h));
 }
 
 /// Does the surface send light into all directions?

@@ -49,6 +49,8 @@ struct Frame {
     uint seed;         ///< of the random numbers
     uint env_quads;    ///< where in the lookups the environment's distribution begins
     uint env_depth;    ///< of its trees
+    uint emitters;       ///< triangles that light is looked for on; 0: emission is met by chance
+    uint first_emitter;  ///< in the lookups: instance and triangle (bits of integers), cumulative and own probability
     float env_texels;  ///< of its image per radian; 0: its levels are no means of texels
     uint bounces;       ///< reflections and refractions in a row
     uint bounce_levels;  ///< bounces, and as many blended surfaces as are passed
@@ -61,7 +63,7 @@ struct Frame {
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 344);
+SHARED_SIZE(Frame, 352);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

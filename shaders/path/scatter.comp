@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
 layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
 layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
 PARAMS(LevelParams)
@@ -39,7 +40,7 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
-#include "path/environment_light.glsl"
+#include "path/emitters.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
 #include "view/seen.glsl"
@@ -181,39 +182,53 @@ Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState sta
     const bool back = dot(s.normal, direction) < 0.0;
     direction = back ? -aboveSurface(-direction, s.geometric) : aboveSurface(direction, s.geometric);
     // What is scattered is blurred: it may show textures as coarse as that.
-    branch = branchAlong(weight, direction, back ? inside : state.medium & ~RAY_SEES_SUN, keptCone(vec2(cone.x, 1.0)), 0u, env_sampled ? -1.0 : 0.0);
+    branch = branchAlong(weight, direction, back ? inside : state.medium & ~RAY_SEES_SUN, keptCone(vec2(cone.x, 1.0)), 0u, -1.0);
     branch.traced = largest(weight * state.weight) >= LEAST_WEIGHT;
     return branch;
 }
 
+/// Light that is drawn rather than summed up.
+struct DrawnLight {
+    LightSample environment, emitter;
+    float reach;  ///< distance to the emitter
+};
+const DrawnLight NO_DRAWN_LIGHT = DrawnLight(LightSample(vec3(0), vec3(0)), LightSample(vec3(0), vec3(0)), 0.0);
+
+/// Its light if no shadow ray is needed, one of which is counted otherwise.
+vec3 unlessTraced(inout LightSample found, Surface s, Shade shade, SurfaceId from, inout uint rays) {
+    if (found.light == vec3(0)) return vec3(0);
+    if ((frame[0].effects & EFFECT_SHADOW) == 0u) return found.light;
+    if (isBlocked(s, shade, from, found.direction))
+        found.light = vec3(0);
+    else
+        rays++;
+    return vec3(0);
+}
+
 /// The light that no ray is to be traced for. `sky`: the sky's is wanted; `rays`: how many shadow rays the rest needs, of them `sky_rays`
-/// to the sky; `found`: what one of them brings from the environment.
-vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, bool sky, out uint rays, out uint sky_rays, out LightSample found) {
+/// to the sky; `found`: what is drawn for some of them.
+vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, bool sky, out uint rays, out uint sky_rays, out DrawnLight found) {
     rays = sky_rays = 0u;
-    found = LightSample(vec3(0), vec3(0));
-    const bool shadowed = (frame[0].effects & EFFECT_SHADOW) != 0u;
+    found = NO_DRAWN_LIGHT;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
         const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
         if (light == vec3(0)) continue;
-        if (shadowed)
+        if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
         else
             sum += light;
     }
     if (env_sampled) {
-        found = environmentLight(s, m, shade, view, randomAt(seed, RANDOM_ENVIRONMENT));
-        if (found.light == vec3(0) || isBlocked(s, shade, from, found.direction)) {
-            found.light = vec3(0);
-        } else if (shadowed) {
-            rays++;
-        } else {
-            sum += found.light;
-        }
-        return sum;
+        found.environment = environmentLight(s, m, shade, view, randomAt(seed, RANDOM_ENVIRONMENT));
+        sum += unlessTraced(found.environment, s, shade, from, rays);
     }
-    if (!sky) return sum;
+    if (emitting) {
+        found.emitter = emitterLight(s, m, shade, view, from, randomAt(seed, RANDOM_EMITTER).x, randomAt(seed, RANDOM_EMITTER_POINT), found.reach);
+        sum += unlessTraced(found.emitter, s, shade, from, rays);
+    }
+    if (env_sampled || !sky) return sum;
     vec3 front, behind;
     skyLight(s, m, shade, view, front, behind);
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + front + behind;
@@ -224,7 +239,7 @@ vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId fr
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSample found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, DrawnLight found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
     if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
     if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
@@ -234,9 +249,16 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, LightSa
             const bool seeps = lightSeeps(s, shade, direction);
             if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, seeps), seeps ? behind : before, from, light * share);
         }
-        if (env_sampled && found.light != vec3(0)) {
-            const bool seeps = lightSeeps(s, shade, found.direction);
-            emitLight(slot, lightRay(s, found.direction, seeps), seeps ? behind : before, from, found.light * share);
+        if (env_sampled && found.environment.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.environment.direction);
+            emitLight(slot++, lightRay(s, found.environment.direction, seeps), seeps ? behind : before, from, found.environment.light * share);
+        }
+        if (emitting && found.emitter.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.emitter.direction);
+            Ray ray = lightRay(s, found.emitter.direction, seeps);
+            // Not as far as the emitter itself.
+            ray.tmax = dot(s.position - ray.origin + found.emitter.direction * found.reach, found.emitter.direction) * (1.0 - EMITTER_GAP);
+            emitLight(slot++, ray, seeps ? behind : before, from, found.emitter.light * share);
         }
     }
     if (env_sampled || !sky || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
@@ -283,7 +305,7 @@ struct Scattering {
     Branch reflection, refraction, diffuse;
     uint reflection_slot, refraction_slot, diffuse_slot, light_slot;  ///< among the rays of the workgroup
     uint light_rays;
-    LightSample found;          ///< of the environment
+    DrawnLight found;
     MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
@@ -332,7 +354,10 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
         c.lost = transmittance(state.medium, hit.t);
     state.weight *= c.lost;
     c.path_weight = state.weight;
-    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, c.reflection, c.refraction);
+    float emission = 1.0;
+    if (emitting && state.density != 0.0 && materials[c.surface.material].emissive != vec3(0))
+        emission = emissionShare(c.surface, c.from, ray.direction, hit.t, state.density);
+    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, emission, c.reflection, c.refraction);
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
     // What is not traced sees the environment.
@@ -409,7 +434,7 @@ void main() {
     c.reflection = c.refraction = c.diffuse = NO_BRANCH;
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
-    c.found = LightSample(vec3(0), vec3(0));
+    c.found = NO_DRAWN_LIGHT;
     if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyAlong(ray, state);
     if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
     if (valid && hit.triangle != NO_TRIANGLE) {

@@ -39,6 +39,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                                                  {"layered", layered},
                                                  {"env_sampled", f.env_sampled()},
                                                  {"indirect", f.indirect()},
+                                                 {"emitting", f.emitting()},
                                                  {"material_kinds", kinds}});
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));

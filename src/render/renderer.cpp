@@ -200,6 +200,7 @@ void Renderer::Impl::prepare_view() {
     frame.seed = settings.seed;
     frame.bounces = settings.bounces;
     frame.bounce_levels = bounce_levels(settings, f.scene.has_blended);
+    frame.emitters = f.emitting() ? f.scene.emitters() : 0;
     frame.gi = f.indirect() ? settings.gi : 0;
     frame.last_level = f.last_level;
     f.commands.upload(f.view.target.frame, std::span<const Frame>(&frame, 1));

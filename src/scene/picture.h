@@ -88,6 +88,11 @@ inline bool is_sampled(const PictureSettings& settings) {
     return settings.spp > 1 || settings.env_mode == EnvironmentMode::sampled;
 }
 
+/// Do emissive triangles light the scene? Without samples their light would be noise.
+inline bool samples_emitters(const PictureSettings& settings) {
+    return is_sampled(settings) || settings.gi > 0;
+}
+
 /// Levels of the tree of rays that reflections and refractions take: bounces, and the blended surfaces that a path goes
 /// straight through.
 uint32_t bounce_levels(const PictureSettings& settings, bool has_blended);
