@@ -42,19 +42,19 @@ float emitterDensity(float probability, vec3 a, vec3 b, vec3 c, vec3 direction, 
 }
 
 /// Of the emission of surface `s`, which a ray met at the distance `t`, what the ray is to bring: all, or less what is found otherwise.
-/// `density`: RayState's.
-float emissionShare(Surface s, SurfaceId id, vec3 direction, float t, float density) {
-    if (density == 0.0) return 1.0;
-    const float probability = emitterProbability(id.instance, id.triangle);
+/// Images of emitters on scattering surfaces, by mirrors and glass, are left out: few rays would find them.
+float emissionShare(Surface s, SurfaceId id, vec3 direction, float t, RayState state) {
+    if (state.density == 0.0 && state.scattered == 0u) return 1.0;
+    const float probability = emitterProbability(id.instance, id.triangle), density = state.density;
     if (probability == 0.0) return 1.0;
-    if (density < 0.0) return 0.0;
+    if (density <= 0.0) return 0.0;
     vec3 a, b, c;
     placedTriangle(id.instance, id.triangle, s.position, a, b, c);
     return density / (density + emitterDensity(probability, a, b, c, direction, t));
 }
 
-/// Light of one emissive triangle; `reach`: distance to it.
-LightSample emitterLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, float choice, vec2 random, out float reach) {
+/// Light of one emissive triangle; `followed`: so are reflections; `reach`: distance to it.
+LightSample emitterLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, bool followed, float choice, vec2 random, out float reach) {
     LightSample result = LightSample(vec3(0, 0, 1), vec3(0));
     reach = 0.0;
     const vec4 chosen = emitter(chooseEmitter(choice));
@@ -70,7 +70,7 @@ LightSample emitterLight(Surface s, Material m, Shade shade, vec3 view, SurfaceI
     result.direction = way / reach;
     const float density = emitterDensity(chosen.w, a, b, c, result.direction, reach);
     if (density == 0.0) return result;
-    const vec3 share = scatteredShare(s, m, shade, view, result.direction) / density + lobeLight(s, m, shade, view, result.direction, density);
+    const vec3 share = scatteredShare(s, m, shade, view, result.direction) / density + lobeLight(s, m, shade, view, result.direction, density, followed);
     if (share == vec3(0) || !alphaPresent(id.triangle, uv)) return result;
     const Surface lamp = surfaceAt(id.instance, id.triangle, uv, result.direction, 0.0);
     const Material emissive = materialOf(lamp);

@@ -19,17 +19,19 @@ bool takePart(inout float u, float part) {
     return taken;
 }
 
-/// Light by the lobes of base and coat, less what the rays that they send out find: over the density of directions.
-vec3 lobeLight(Surface s, Material m, Shade shade, vec3 view, vec3 to_light, float density) {
+/// Light by the lobes of base and coat, less what the rays that they send out find, if those are `followed`: over the density of
+/// directions.
+vec3 lobeLight(Surface s, Material m, Shade shade, vec3 view, vec3 to_light, float density, bool followed) {
     if (sharesBranch(s, m) || !samplesMicrofacets()) return vec3(0);
     const vec3 h = normalize(view + to_light);
+    const float base_part = !followed ? 0.0 : (transmits(m) ? 1.0 : tracedPart(shade.lobe.roughness, m.metallic));
     vec3 sum = vec3(0);
     if (dot(s.normal, to_light) > 0.0)
         sum = baseHighlight(s, m, shade, view, to_light, h) * (shade.below_sheen * shade.below_coat) /
-              (density + tracedPart(shade.lobe.roughness, m.metallic) * lobeDensity(shade.lobe, view, h));
+              (density + base_part * lobeDensity(shade.lobe, view, h));
     if (!coated || m.clearcoat == 0.0) return sum;
     const Lobe coat = roundLobe(s.coat_normal, m.coat_roughness);
-    return sum + coatHighlight(s, m, view, to_light, h) / (density + tracedPart(m.coat_roughness, 0.0) * lobeDensity(coat, view, h));
+    return sum + coatHighlight(s, m, view, to_light, h) / (density + (followed ? tracedPart(m.coat_roughness, 0.0) : 0.0) * lobeDensity(coat, view, h));
 }
 
 /// Does the surface send light into all directions?
@@ -62,7 +64,7 @@ LightSample environmentLight(Surface s, Material m, Shade shade, vec3 view, vec2
     vec3 share = vec3(0);
     if (scatters)
         share = scatteredShare(s, m, shade, view, result.direction) / mix(scatteredDensity(s, behind, result.direction), density, by_light);
-    if (found) share += lobeLight(s, m, shade, view, result.direction, density) / by_light;
+    if (found) share += lobeLight(s, m, shade, view, result.direction, density, true) / by_light;
     result.light = share == vec3(0) ? vec3(0) : share * environmentRadiance(result.direction, 0.0);
     return result;
 }

@@ -207,13 +207,13 @@ vec3 unlessTraced(inout LightSample found, Surface s, Shade shade, SurfaceId fro
 
 /// The light that no ray is to be traced for. `sky`: the sky's is wanted; `rays`: how many shadow rays the rest needs, of them `sky_rays`
 /// to the sky; `found`: what is drawn for some of them.
-vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, bool sky, out uint rays, out uint sky_rays, out DrawnLight found) {
+vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, RayState state, bool sky, out uint rays, out uint sky_rays, out DrawnLight found) {
     rays = sky_rays = 0u;
     found = NO_DRAWN_LIGHT;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
+        const vec3 light = arrivingLight(k, s, m, shade, view, from, state.seed, direction);
         if (light == vec3(0)) continue;
         if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
@@ -221,11 +221,12 @@ vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId fr
             sum += light;
     }
     if (env_sampled) {
-        found.environment = environmentLight(s, m, shade, view, randomAt(seed, RANDOM_ENVIRONMENT));
+        found.environment = environmentLight(s, m, shade, view, randomAt(state.seed, RANDOM_ENVIRONMENT));
         sum += unlessTraced(found.environment, s, shade, from, rays);
     }
     if (emitting) {
-        found.emitter = emitterLight(s, m, shade, view, from, randomAt(seed, RANDOM_EMITTER).x, randomAt(seed, RANDOM_EMITTER_POINT), found.reach);
+        const bool followed = (frame[0].effects & EFFECT_REFLECTION) != 0u && !isLast(state, false);
+        found.emitter = emitterLight(s, m, shade, view, from, followed, randomAt(state.seed, RANDOM_EMITTER).x, randomAt(state.seed, RANDOM_EMITTER_POINT), found.reach);
         sum += unlessTraced(found.emitter, s, shade, from, rays);
     }
     if (env_sampled || !sky) return sum;
@@ -355,8 +356,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     state.weight *= c.lost;
     c.path_weight = state.weight;
     float emission = 1.0;
-    if (emitting && state.density != 0.0 && materials[c.surface.material].emissive != vec3(0))
-        emission = emissionShare(c.surface, c.from, ray.direction, hit.t, state.density);
+    if (emitting && materials[c.surface.material].emissive != vec3(0)) emission = emissionShare(c.surface, c.from, ray.direction, hit.t, state);
     c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, emission, c.reflection, c.refraction);
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
@@ -370,7 +370,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     } else if (!ignoresLight(c.surface, m)) {
         const Shade shade = shadeOf(c.surface, m, -ray.direction);
         if (indirect) c.diffuse = diffuseBranch(c.surface, m, shade, -ray.direction, state, cone, mediumBehind(c.surface, m, state.medium));
-        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state.seed, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
     }
     c.node.radiance *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
