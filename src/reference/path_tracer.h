@@ -21,8 +21,8 @@ class PathTracer {
     ~PathTracer();
 
     /// `threads`: 0 for all cores. The picture does not depend on it. `progress` receives the share done, [0, 1], from
-    /// the calling thread only; if it throws, all threads stop and the exception goes on. Throws Error for impossible
-    /// settings, naming the option.
+    /// the calling thread only; if it throws, all threads stop and the exception goes on. EnvironmentMode::sampled
+    /// needs Environment::distribution. Throws Error for impossible settings, naming the option.
     Picture render(const PictureSettings& settings, const std::function<void(double)>& progress = {},
                    unsigned threads = 0) const;
 

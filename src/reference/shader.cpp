@@ -20,7 +20,9 @@ glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
 
 glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
-    if (!hit.hit()) return meeting.passed * context_.surroundings.seen(arriving.direction, arriving.sees_sun);
+    if (!hit.hit())
+        return meeting.passed * environment_share(arriving.direction, arriving.density) *
+               context_.surroundings.seen(arriving.direction, arriving.sees_sun, context_.rough_limit);
     const double width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
@@ -57,7 +59,9 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
-    if (!branch.traced) return branch.weight * context_.surroundings.radiance(branch.direction, branch.blur);
+    if (!branch.traced)
+        return branch.weight * environment_share(branch.direction, branch.density) *
+               context_.surroundings.radiance(branch.direction, branch.blur);
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;
@@ -66,7 +70,8 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.media = branch.media;
     next.cone = branch.cone;
     next.sees_sun = branch.sees_sun;
-    next.seed = hash3({path.seed, which, path.level}).x;
+    next.density = branch.density;
+    next.seed = branch_seed(path.seed, which, path.level);
     next.level = path.level + 1;
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
