@@ -17,6 +17,12 @@ double Shader::environment_share(const glm::dvec3& direction, double density) co
     return density < 0 ? 0 : density / (density + context_.surroundings.density(direction));
 }
 
+/// A ray that brings all of the light sees its mean over the cone: a sun's disc in a curved mirror would be noise. What
+/// is shared must be the same light from both sides.
+double Shader::environment_blur(const Cone& cone, double density) const {
+    return context_.samples_environment() && density == 0 ? context_.surroundings.blur_of(cone.spread) : 0;
+}
+
 Shader::BothSides Shader::scattered(const Lit& at) {
     const Optics& m = at.surface.optics;
     const double diffuse = (1 - m.metallic) * (1 - m.transmission) / pi,

@@ -22,7 +22,8 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
     if (!hit.hit())
         return meeting.passed * environment_share(arriving.direction, arriving.density) *
-               context_.surroundings.seen(arriving.direction, arriving.sees_sun, context_.rough_limit);
+               context_.surroundings.seen(arriving.direction, environment_blur(arriving.cone, arriving.density),
+                                          arriving.sees_sun, context_.rough_limit);
     const double width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
@@ -35,8 +36,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     glm::dvec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
-        unlit_ =
-            kept * (sum + (on.traced ? glm::dvec3(0) : on.weight * context_.surroundings.radiance(on.direction, 0)));
+        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on)));
     }
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
@@ -55,13 +55,18 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     return kept * sum;
 }
 
+/// A branch that no ray follows sees the environment.
+glm::dvec3 Shader::untraced(const Branch& branch) const {
+    const double blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
+    return branch.weight * environment_share(branch.direction, branch.density) *
+           context_.surroundings.radiance(branch.direction, blur);
+}
+
 /// The light of one of a hit's branches; `which`: of the two, a channel being part of the second.
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
-    if (!branch.traced)
-        return branch.weight * environment_share(branch.direction, branch.density) *
-               context_.surroundings.radiance(branch.direction, branch.blur);
+    if (!branch.traced) return untraced(branch);
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;

@@ -156,6 +156,7 @@ class Shader {
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
+    glm::dvec3 untraced(const Branch& branch) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
 
@@ -182,6 +183,7 @@ class Shader {
     static BothSides scattered(const Lit& at);
     glm::dvec3 sky_light(const Lit& at);
     double environment_share(const glm::dvec3& direction, double density) const;
+    double environment_blur(const Cone& cone, double density) const;
     static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
     glm::dvec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn) const;
     glm::dvec3 environment_light(const Lit& at);

@@ -46,8 +46,14 @@ glm::dvec3 Surroundings::radiance(const glm::dvec3& d, double blur) const {
     return exact > lower ? glm::mix(level(uv, lower), level(uv, upper), exact - lower) : level(uv, lower);
 }
 
-glm::dvec3 Surroundings::seen(const glm::dvec3& d, bool sees_sun, double rough_limit) const {
-    const glm::dvec3 all = radiance(d, 0);
+double Surroundings::blur_of(double spread) const {
+    const double texels = std::abs(spread) * environment_.height / optics::pi;
+    if (!environment_.is_pyramid || environment_.levels < 2 || texels <= 1) return 0;
+    return std::min(1.0, std::log2(texels) / (environment_.levels - 1));
+}
+
+glm::dvec3 Surroundings::seen(const glm::dvec3& d, double blur, bool sees_sun, double rough_limit) const {
+    const glm::dvec3 all = radiance(d, blur);
     if (!sees_sun) return all * std::min(1.0, rough_limit / std::max(optics::largest(all), 1e-30));
     const bool sun = glm::dot(d, glm::dvec3(environment_.sun_direction)) >= double(environment_.sun_cosine);
     return sun ? all + glm::dvec3(environment_.sun_radiance) : all;

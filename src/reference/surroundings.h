@@ -14,8 +14,10 @@ class Surroundings {
 
     /// Radiance along a unit direction without the sun's disc; `blur` in [0, 1]: a surface's roughness.
     glm::dvec3 radiance(const glm::dvec3& direction, double blur) const;
+    /// The blur of light from a cone that widens by `spread` per world unit; 0 where the levels are no means.
+    double blur_of(double spread) const;
     /// What a ray that hits nothing sees; one that does not see the sun sees nothing brighter than `rough_limit`.
-    glm::dvec3 seen(const glm::dvec3& direction, bool sees_sun, double rough_limit) const;
+    glm::dvec3 seen(const glm::dvec3& direction, double blur, bool sees_sun, double rough_limit) const;
     /// Of the environment on a surface with this normal, from nine harmonics.
     glm::dvec3 irradiance(const glm::dvec3& normal) const;
 

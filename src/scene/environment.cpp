@@ -82,6 +82,7 @@ glm::vec3 default_sun_direction() {
 
 Environment sky_environment(const glm::vec3& sun_direction) {
     Environment sky;
+    sky.is_pyramid = true;
     sky.width = 1024;
     sky.height = 512;
     sky.texels.resize(size_t(sky.width) * sky.height);
@@ -125,6 +126,7 @@ Environment color_environment(const glm::vec3& radiance) {
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels) {
     Environment environment;
     environment.is_image = true;
+    environment.is_pyramid = true;
     environment.width = width;
     environment.height = height;
     environment.texels.assign(pixels.begin(), pixels.end());

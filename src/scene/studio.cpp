@@ -142,6 +142,7 @@ Environment studio_environment() {
         }
     const Environment sharp = image_environment(width, height, pixels);
     Environment studio = sharp;
+    studio.is_pyramid = false;
     const std::vector<Level> from = levels_of(sharp);
     size_t offset = 0;
     for (uint32_t i = 1; i <= blurred; i++) {
