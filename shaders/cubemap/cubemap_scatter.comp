@@ -28,6 +28,7 @@ GpuObject object;  // of this thread's hit
 bool samplesMicrofacets() { return false; }
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) { return meanMicrofacet(lobe, view); }
 float tracedPart(float roughness, float metallic) { return 1.0; }
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) { return environmentRadiance(direction, blur); }
 void decide(inout Branch branch, RayState state, bool passes) {
     branch.traced = (frame[0].effects & branch.effect) != 0u && object.probe != NO_PROBE;
 }
@@ -74,7 +75,7 @@ void main() {
         const Material m = materialOf(s);
         flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, reflection, refraction);
+        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, 1.0, reflection, refraction);
         radiance += seen(reflection, reflection.blur);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).

@@ -50,7 +50,7 @@ void main() {
     sum += behind;
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = lampLight(k, s, m, shade, view, direction);
+        const vec3 light = lampLight(k, s, m, shade, view, false, vec2(0), direction);
         if (light != vec3(0)) sum += light * lampShare(k, s, SurfaceId(hit.instance, hit.triangle), direction, lightSeeps(s, shade, direction));
     }
     nodes[i].radiance += s.alpha * sum;

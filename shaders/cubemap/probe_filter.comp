@@ -25,7 +25,7 @@ void main() {
     vec4 sum = vec4(0);
     float weight = 0.0;
     for (uint k = 0u; k < SAMPLES; k++) {
-        const vec3 h = sampleGgx(vec3(0, 0, 1), alpha, randomPair(0u, k, RANDOM_MICROFACET));
+        const vec3 h = sampleGgx(vec3(0, 0, 1), alpha, vec2((float(k) + 0.5) / float(SAMPLES), float(bitfieldReverse(k)) / 4294967296.0));
         const vec3 l = vec3(2.0 * h.z * h.xy, 2.0 * h.z * h.z - 1.0);
         if (l.z <= 0.0) continue;
         const float solid_angle = 4.0 / (float(SAMPLES) * ggxDistribution(h.z, alpha));

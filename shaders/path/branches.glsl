@@ -19,20 +19,11 @@ struct Branch {
     uint effect;      ///< EFFECT_*: a clear coat's is a reflection in the refraction's place
     bool dispersed;   ///< `direction` is green's alone
     vec3 red, blue;   ///< theirs
+    float density;    ///< of the new ray (RayState)
 };
-const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u, false, vec3(0, 0, 1), vec3(0, 0, 1));
-Branch branchAlong(vec3 weight, vec3 direction, uint medium, uint cone, uint effect) {
-    return Branch(weight, direction, medium, false, 0.0, cone, effect, false, direction, direction);
-}
-
-/// What a branch that is not traced sees.
-vec3 untracedLight(Branch branch) {
-    vec3 light = environmentRadiance(branch.direction, branch.blur);
-    if (dispersive && branch.dispersed) {
-        light.r = environmentRadiance(branch.red, branch.blur).r;
-        light.b = environmentRadiance(branch.blue, branch.blur).b;
-    }
-    return branch.weight * light;
+const Branch NO_BRANCH = Branch(vec3(0), vec3(0, 0, 1), MEDIUM_NONE, false, 0.0, 0u, 0u, false, vec3(0, 0, 1), vec3(0, 0, 1), 0.0);
+Branch branchAlong(vec3 weight, vec3 direction, uint medium, uint cone, uint effect, float density) {
+    return Branch(weight, direction, medium, false, 0.0, cone, effect, false, direction, direction, density);
 }
 
 /// The RAY_CHANNEL of a ray, as a number from 0.
@@ -56,6 +47,19 @@ float tracedPart(float roughness, float metallic);
 /// Sets `traced` by the branch's effect; `passes`: the ray goes on through a blended surface.
 void decide(inout Branch branch, RayState state, bool passes);
 
+/// Of the environment's light what a ray of this density and cone brings; the rest is found otherwise. `blur` in [0, 1]: roughness.
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone);
+
+/// What a branch that is not traced sees.
+vec3 untracedLight(Branch branch) {
+    vec3 light = environmentSeen(branch.direction, branch.blur, branch.density, branch.cone);
+    if (dispersive && branch.dispersed) {
+        light.r = environmentSeen(branch.red, branch.blur, branch.density, branch.cone).r;
+        light.b = environmentSeen(branch.blue, branch.blur, branch.density, branch.cone).b;
+    }
+    return branch.weight * light;
+}
+
 /// What of a surface's light is left where it covers a part only; what lets pass the rest is its second branch. Thin glass sends its
 /// light the same way.
 void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 radiance, inout Branch reflection, inout Branch refraction) {
@@ -63,7 +67,7 @@ void passBeside(Surface s, vec3 incoming, RayState state, vec2 cone, inout vec3 
     radiance *= s.alpha;
     reflection.weight *= s.alpha;
     const uint passed = (state.medium & RAY_PASSES) == RAY_PASSES ? state.medium : state.medium + RAY_PASSED;
-    refraction = branchAlong(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, keptCone(cone), EFFECT_REFRACTION);
+    refraction = branchAlong(refraction.weight * s.alpha + (1.0 - s.alpha), incoming, passed, keptCone(cone), EFFECT_REFRACTION, state.density);
     decide(refraction, state, true);
 }
 
@@ -97,8 +101,10 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
     float weight = share;
     if (isSampled(lobe))
         weight = m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)).x * masking(lobe, reflected);
-    Branch coat = branchAlong(vec3(weight), aboveSurface(reflected, s.geometric), state.medium & ~(isMirror(lobe) ? 0u : RAY_SEES_SUN),
-                              keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
+    const vec3 direction = aboveSurface(reflected, s.geometric);
+    const float density = isSampled(lobe) && !has_second ? lobeDensity(lobe, view, normalize(view + direction)) : 0.0;
+    Branch coat = branchAlong(vec3(weight), direction, state.medium & ~(isMirror(lobe) ? 0u : RAY_SEES_SUN),
+                              keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION, density);
     decide(coat, state, false);
     radiance += fade(coat, m.coat_roughness, 0.0);
     coat.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
@@ -107,6 +113,9 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
     else
         refraction = coat;
 }
+
+/// May a coat be mirrored by the branch of what is below it? Then light of the environment is found by that branch alone.
+bool sharesBranch(Surface s, Material m) { return coated && m.clearcoat > 0.0 && (transmits(m) || s.alpha < 1.0); }
 
 /// What a microfacet makes of a ray.
 struct Facet {
@@ -195,11 +204,18 @@ void disperse(Facet f, Interface face, vec3 incoming, uint channel, inout Branch
     if (!refractRay(incoming, f.normal, face.etas.b, refraction.blue)) refraction.blue = refraction.direction;
 }
 
-/// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit.
-vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, out Branch reflection, out Branch refraction) {
+/// RayState::medium of a ray that goes on behind the surface; `medium`: of one before it.
+uint mediumBehind(Surface s, Material m, uint medium) {
+    medium &= ~RAY_SEES_SUN;
+    if (!transmits(m) || (m.flags & MATERIAL_THIN) != 0u) return medium;
+    return (s.front ? s.material : MEDIUM_NONE) | (medium & (RAY_PASSES | RAY_CHANNEL));
+}
+
+/// Both branches of a surface, and what it sends by itself; `cone`: of the incoming ray at the hit; `emission`: what of it counts.
+vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, vec2 cone, float emission, out Branch reflection, out Branch refraction) {
     reflection = refraction = NO_BRANCH;
     const Material m = materialOf(s);
-    vec3 radiance = m.emissive;
+    vec3 radiance = m.emissive * emission;
     if ((m.flags & MATERIAL_UNLIT) != 0u) {
         radiance = s.base_color;
         passBeside(s, incoming, state, cone, radiance, reflection, refraction);
@@ -214,8 +230,9 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     // After a rough surface the sun's disc is a light, not a thing to be seen: its image in a further mirror would be noise.
     const uint sun = isMirror(lobe) ? state.medium & RAY_SEES_SUN : 0u;
     const uint medium = state.medium & ~RAY_SEES_SUN;
-    reflection = branchAlong(reflected * below, aboveSurface(facet.reflected, s.geometric), medium | sun,
-                             keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION);
+    const vec3 mirrored = aboveSurface(facet.reflected, s.geometric);
+    const float density = isSampled(lobe) && !sharesBranch(s, m) ? lobeDensity(lobe, view, normalize(view + mirrored)) : 0.0;
+    reflection = branchAlong(reflected * below, mirrored, medium | sun, keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION, density);
     decide(reflection, state, false);
     const bool transparent = transmits(m);
     if (!transparent) radiance += fade(reflection, lobe.roughness, m.metallic);
@@ -223,10 +240,11 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
 
     if (transparent && facet.passes) {
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
-        const uint inside = thin ? medium : (s.front ? s.material : MEDIUM_NONE) | (state.medium & (RAY_PASSES | RAY_CHANNEL));
+        const uint inside = mediumBehind(s, m, medium);
         const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
         const vec3 direction = thin && isSampled(lobe) ? -aboveSurface(-facet.through, s.geometric) : facet.through;
-        refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION);
+        refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION,
+                                 state.density);
         decide(refraction, state, false);
         disperse(facet, face, incoming, channelOf(state.medium), refraction);
     }

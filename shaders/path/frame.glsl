@@ -180,21 +180,29 @@ vec3 environmentLevel(vec2 uv, uint level) {
     return mix(top, bottom, f.y);
 }
 
-/// Radiance of the environment along a unit direction, without the sun's disc; `blur` in [0, 1]: roughness.
-vec3 environmentRadiance(vec3 d, float blur) {
+/// Radiance of the environment along a unit direction, without the sun's disc; `level`: 0 the finest, at most the last.
+vec3 environmentAt(vec3 d, float level) {
     const vec2 uv = vec2(0.5 + atan(d.x, -d.z) * (0.5 / PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
-    const float level = blur * float(frame[0].env_levels - 1u);
     const uint lower = uint(level);
     const vec3 sharp = environmentLevel(uv, lower);
     const float part = level - float(lower);
     return part > 0.0 ? mix(sharp, environmentLevel(uv, min(lower + 1u, frame[0].env_levels - 1u)), part) : sharp;
 }
 
+/// `blur` in [0, 1]: roughness.
+vec3 environmentRadiance(vec3 d, float blur) { return environmentAt(d, blur * float(frame[0].env_levels - 1u)); }
+
+/// The level whose texels are as wide as a cone that grows by `spread` (cone.glsl).
+float environmentLevelOf(float spread) {
+    return clamp(log2(max(abs(spread) * frame[0].env_texels, 1.0)), 0.0, float(frame[0].env_levels - 1u));
+}
+
+vec3 sunDisc(vec3 d) { return dot(d, frame[0].sun_direction) >= frame[0].sun_cosine ? frame[0].sun_radiance : vec3(0); }
+
 vec3 skyRadiance(vec3 d, bool sees_sun) {
     vec3 radiance = environmentRadiance(d, 0.0);
     if (!sees_sun) radiance *= min(1.0, frame[0].rough_limit / max(largest(radiance), 1e-30));
-    if (sees_sun && dot(d, frame[0].sun_direction) >= frame[0].sun_cosine) radiance += frame[0].sun_radiance;
-    return radiance;
+    return sees_sun ? radiance + sunDisc(d) : radiance;
 }
 
 /// Irradiance of the environment on a surface with this normal, from spherical harmonics.

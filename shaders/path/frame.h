@@ -16,8 +16,9 @@ struct GpuLight {
     vec3 color;
     float cone_scale;  ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
     float cone_offset;
+    float sine;  ///< directional: of its disc's angular radius; else the radius of its ball, world units
 };
-SHARED_SIZE(GpuLight, 52);
+SHARED_SIZE(GpuLight, 56);
 
 /// Everything of a frame that does not change from pass to pass.
 struct Frame {
@@ -44,9 +45,17 @@ struct Frame {
     vec3 irradiance[9];    ///< spherical harmonics of the environment's irradiance, band by band
     float surface_offset;  ///< height above its surface, voxels of its cube, from which a secondary ray counts (not of
                            ///< exact hits)
-    uint spp;
+    uint sample_bits;  ///< samples of a pixel are less than 2 to its power
+    uint seed;         ///< of the random numbers
+    uint env_quads;    ///< where in the lookups the environment's distribution begins
+    uint env_depth;    ///< of its trees
+    uint emitters;       ///< triangles that light is looked for on; 0: emission is met by chance
+    uint first_emitter;  ///< in the lookups: instance and triangle (bits of integers), cumulative and own probability
+    float env_texels;  ///< of its image per radian; 0: its levels are no means of texels
     uint bounces;       ///< reflections and refractions in a row
-    uint last_level;    ///< level whose hits spawn no more rays: bounces, and as many blended surfaces as are passed
+    uint bounce_levels;  ///< bounces, and as many blended surfaces as are passed
+    uint gi;            ///< diffuse bounces
+    uint last_level;    ///< level whose hits spawn no more rays: the sum of both
     float rough_limit;  ///< radiance of the environment that rays after a rough surface see at most: the sun is a light
     float tolerance;    ///< of `tolerance` hits, world units; else 0
     uvec2 block;        ///< pixels of a block of two_level
@@ -54,12 +63,13 @@ struct Frame {
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 320);
+SHARED_SIZE(Frame, 352);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u
 #define EFFECT_AMBIENT 8u
 #define EFFECT_COMPENSATION 16u  // of the energy that rough surfaces would lose
+#define EFFECT_SAMPLED 32u       // of rough lobes one direction each, not their means
 
 #ifdef __cplusplus
 }  // namespace peelray

@@ -18,6 +18,7 @@ vec3 childrenRadiance(uint i, PathNode node) {
     if ((node.flags & NODE_BRANCHES) == 0u) return sum;
     const PathBranches children = branches[i];
     if (children.child0 < params.next_capacity) sum += children.weight0 * litRadiance(next_nodes[children.child0]);
+    if (children.child2 < params.next_capacity) sum += children.weight2 * litRadiance(next_nodes[children.child2]);
     if (children.child1 >= params.next_capacity) return sum;
     vec3 second = litRadiance(next_nodes[children.child1]);
     if ((node.flags & NODE_DISPERSED) != 0u && children.child1 + 2u < params.next_capacity) {

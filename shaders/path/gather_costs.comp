@@ -27,6 +27,7 @@ void main() {
     if ((node.flags & NODE_BRANCHES) != 0u) {
         const PathBranches children = branches[i];
         if (children.child0 != NO_CHILD) sum = costSum(sum, next_costs[children.child0]);
+        if (children.child2 != NO_CHILD) sum = costSum(sum, next_costs[children.child2]);
         const uint second = children.child1 == NO_CHILD ? 0u : ((node.flags & NODE_DISPERSED) != 0u ? 3u : 1u);
         for (uint k = 0u; k < second; k++) sum = costSum(sum, next_costs[children.child1 + k]);
     }

@@ -7,24 +7,47 @@
 #include "path/lobe.glsl"
 #include "path/tables.glsl"
 
-/// Irradiance of a light on a surface that faces it, without visibility; `direction`: to the light.
-vec3 lightAt(GpuLight light, vec3 position, out vec3 direction, out float distance) {
-    distance = uintBitsToFloat(0x7f800000u);
-    direction = -light.direction;
-    if (light.kind == 0u) return light.color;
-    const vec3 to_light = light.position - position;
-    const float distance2 = dot(to_light, to_light);
-    distance = sqrt(distance2);
-    if (distance == 0.0) return vec3(0);
-    direction = to_light / distance;
-    // KHR_lights_punctual: inverse square with a smooth end at the range.
-    const float r = distance / light.range, r2 = r * r;
-    float strength = clamp(1.0 - r2 * r2, 0.0, 1.0) / distance2;
-    if (light.kind == 2u) {
-        const float cone = clamp(dot(light.direction, -direction) * light.cone_scale + light.cone_offset, 0.0, 1.0);
-        strength *= cone * cone;
+/// Where the light of a lamp or the sun comes from.
+struct Incidence {
+    vec3 irradiance;  ///< on a surface that faces it, if nothing is in its way
+    vec3 direction;   ///< to it
+};
+
+/// A direction to a ball, or a disc in the sky, whose half angle has this sine; `share`: of the irradiance that would arrive if all came
+/// from its centre, times the cosine's mean. Shirley, Wang and Zimmerman 1996; `random` in [0, 1).
+vec3 directionToBall(vec3 centre, float sine, vec2 random, out float share) {
+    const float farthest = sqrt(max(0.0, 1.0 - sine * sine));
+    share = 2.0 / (1.0 + farthest);  // the cone's solid angle over that of its projection, which lights what faces it
+    const float off = random.x * sine * sine / (1.0 + farthest), flat_part = sqrt(off * (2.0 - off)), phi = 2.0 * PI * random.y;
+    vec3 t, b;
+    tangents(centre, t, b);
+    return normalize(centre * (1.0 - off) + t * (flat_part * cos(phi)) + b * (flat_part * sin(phi)));
+}
+
+/// `soft`: from a point of the light that `random` chooses, else from its centre.
+Incidence lightAt(GpuLight light, vec3 position, bool soft, vec2 random) {
+    Incidence at = Incidence(light.color, -light.direction);
+    float sine = light.sine;
+    if (light.kind != 0u) {
+        const vec3 to_light = light.position - position;
+        const float distance2 = dot(to_light, to_light), distance = sqrt(distance2);
+        if (distance == 0.0) return Incidence(vec3(0), at.direction);
+        at.direction = to_light / distance;
+        // KHR_lights_punctual: inverse square with a smooth end at the range.
+        const float r = distance / light.range, r2 = r * r;
+        float strength = clamp(1.0 - r2 * r2, 0.0, 1.0) / distance2;
+        if (light.kind == 2u) {
+            const float cone = clamp(dot(light.direction, -at.direction) * light.cone_scale + light.cone_offset, 0.0, 1.0);
+            strength *= cone * cone;
+        }
+        at.irradiance *= strength;
+        sine = min(1.0, sine / distance);
     }
-    return light.color * strength;
+    if (!soft || sine == 0.0) return at;
+    float share;
+    at.direction = directionToBall(at.direction, sine, random, share);
+    at.irradiance *= share;
+    return at;
 }
 
 /// What a surface makes of light, wherever it comes from.
@@ -69,7 +92,7 @@ bool lightSeeps(Surface s, Shade shade, vec3 to_light) { return seeping && shade
 
 /// What a microfacet of rough glass reflects of what its two ways keep (keptByGlass), over what it reflects without compensation.
 vec3 glassGain(Material m, Interface face, Lobe lobe, vec3 view, vec3 to_light, vec3 h, vec3 reflectance) {
-    if ((frame[0].effects & EFFECT_COMPENSATION) == 0u || frame[0].spp <= 1u) return vec3(1);
+    if ((frame[0].effects & (EFFECT_COMPENSATION | EFFECT_SAMPLED)) != (EFFECT_COMPENSATION | EFFECT_SAMPLED)) return vec3(1);
     vec3 through;
     bool passes = true;
     if ((m.flags & MATERIAL_THIN) != 0u)
@@ -87,36 +110,54 @@ vec3 sheenReflectance(Surface s, Material m, vec3 view, vec3 to_light, vec3 h) {
     return m.sheen_color * sheenDistribution(clamp(dot(s.normal, h), 0.0, 1.0), alpha) / ((1.0 + sheenLambda(n_v, alpha) + sheenLambda(n_l, alpha)) * 4.0 * n_v);
 }
 
+/// Of the base's lobe, without what lies above it; the surface faces the light. `h`: half-way between `view` and `to_light`.
+vec3 baseHighlight(Surface s, Material m, Shade shade, vec3 view, vec3 to_light, vec3 h) {
+    if (isMirror(shade.lobe)) return vec3(0);
+    const float v_h = clamp(dot(view, h), 0.0, 1.0);
+    const Interface face = interfaceInAir(m, s.front, CHANNEL_MIDDLE);
+    const vec3 dielectric = interfaceReflectance(m, face, v_h);
+    vec3 gain = shade.gains.dielectric;
+    if (transmitsRough(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
+    return mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.gains.metal, m.metallic) * highlight(shade.lobe, view, to_light, h);
+}
+
+vec3 coatHighlight(Surface s, Material m, vec3 view, vec3 to_light, vec3 h) {
+    return m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, clamp(dot(view, h), 0.0, 1.0)) *
+           highlight(roundLobe(s.coat_normal, m.coat_roughness), view, to_light, h);
+}
+
 /// Reflected share of light from `to_light`, times the cosine; of what seeps through the share of light from behind.
 vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
     const float n_l = dot(s.normal, to_light);
     if (lightSeeps(s, shade, to_light))
         return shade.seeping * -n_l * leftByMirroring(s, m, shade, view) * shade.below_sheen * shade.below_coat;
     const vec3 h = normalize(view + to_light);
-    const float v_h = clamp(dot(view, h), 0.0, 1.0);
     vec3 result = vec3(0);
     if (n_l > 0.0) {
-        const Interface face = interfaceInAir(m, s.front, CHANNEL_MIDDLE);
-        const vec3 dielectric = interfaceReflectance(m, face, v_h);
-        result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
-        if (!isMirror(shade.lobe)) {
-            vec3 gain = shade.gains.dielectric;
-            if (transmitsRough(m)) gain = glassGain(m, face, shade.lobe, view, to_light, h, dielectric);
-            result += mix(dielectric * gain, metalReflectance(m, face, s.base_color, v_h) * shade.gains.metal, m.metallic) * highlight(shade.lobe, view, to_light, h);
-        }
+        const vec3 dielectric = interfaceReflectance(m, interfaceInAir(m, s.front, CHANNEL_MIDDLE), clamp(dot(view, h), 0.0, 1.0));
+        result = (1.0 - largest(dielectric)) * shade.diffuse * n_l + baseHighlight(s, m, shade, view, to_light, h);
         if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);
     }
     if (!coated || m.clearcoat == 0.0) return result;
-    return result * shade.below_coat +
-           m.clearcoat * fresnelSchlick(vec3(COAT_REFLECTANCE), 1.0, v_h) * highlight(roundLobe(s.coat_normal, m.coat_roughness), view, to_light, h);
+    return result * shade.below_coat + coatHighlight(s, m, view, to_light, h);
+}
+
+/// The same of the environment's light by all for which no ray is traced: what is scattered, the sheen, and what seeps through. As of the
+/// sky's light, what the surface mirrors on the whole is not available for it.
+vec3 scatteredShare(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
+    const float n_l = dot(s.normal, to_light);
+    vec3 share = n_l > 0.0 ? shade.diffuse * n_l : (seeping ? shade.seeping * -n_l : vec3(0));
+    if (share != vec3(0)) share *= leftByMirroring(s, m, shade, view) * shade.below_sheen;
+    if (n_l > 0.0) share += sheenReflectance(s, m, view, to_light, normalize(view + to_light));
+    return share * shade.below_coat;
 }
 
 /// Light of a lamp or the sun that the surface sends towards `view`, if nothing is in its way; `direction`: to the light. The
 /// shading normal alone says whether the surface faces the light: the triangle's would cut it off in facets.
-vec3 lampLight(uint index, Surface s, Material m, Shade shade, vec3 view, out vec3 direction) {
-    float distance;
-    const vec3 light = lightAt(lights[index], s.position, direction, distance);
-    return light == vec3(0) ? light : light * reflectance(s, m, shade, view, direction);
+vec3 lampLight(uint index, Surface s, Material m, Shade shade, vec3 view, bool soft, vec2 random, out vec3 direction) {
+    const Incidence at = lightAt(lights[index], s.position, soft, random);
+    direction = at.direction;
+    return at.irradiance == vec3(0) ? vec3(0) : at.irradiance * reflectance(s, m, shade, view, direction);
 }
 
 /// Diffuse light of the sky that the surface sends towards `view`, if it sees all of it: of what is in front, and of what is behind.

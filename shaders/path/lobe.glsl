@@ -47,16 +47,16 @@ float masking(Lobe lobe, vec3 direction) {
     return ggxMasking(within(lobe, direction), lobe.alpha);
 }
 
+/// How densely sampleMicrofacet() sends light of `view` where `h` mirrors it to, per steradian; of a mirror it tells nothing.
+float lobeDensity(Lobe lobe, vec3 view, vec3 h) {
+    const float n_v = max(GRAZING_COSINE, dot(lobe.normal, view)), n_h = clamp(dot(lobe.normal, h), 0.0, 1.0);
+    if (!stretched || lobe.round) return ggxDistribution(n_h, lobe.alpha.x) * ggxMasking(n_v, lobe.alpha.x) / (4.0 * n_v);
+    return ggxDistribution(vec3(within(lobe, h).xy, n_h), lobe.alpha) * ggxMasking(vec3(within(lobe, view).xy, n_v), lobe.alpha) / (4.0 * n_v);
+}
+
 /// What the lobe sends from `to_light` to `view`, times the cosine; less Fresnel's share. `h`: half-way between them.
 float highlight(Lobe lobe, vec3 view, vec3 to_light, vec3 h) {
-    const float n_l = dot(lobe.normal, to_light);
-    if (n_l <= 0.0 || isMirror(lobe)) return 0.0;
-    const float n_v = max(GRAZING_COSINE, dot(lobe.normal, view)), n_h = clamp(dot(lobe.normal, h), 0.0, 1.0);
-    if (!stretched || lobe.round)
-        return ggxDistribution(n_h, lobe.alpha.x) * ggxMasking(n_v, lobe.alpha.x) * ggxMasking(n_l, lobe.alpha.x) / (4.0 * n_v);
-    const vec3 v = within(lobe, view);
-    return ggxDistribution(vec3(within(lobe, h).xy, n_h), lobe.alpha) * ggxMasking(vec3(v.xy, n_v), lobe.alpha) *
-           ggxMasking(within(lobe, to_light), lobe.alpha) / (4.0 * n_v);
+    return isMirror(lobe) || dot(lobe.normal, to_light) <= 0.0 ? 0.0 : lobeDensity(lobe, view, h) * masking(lobe, to_light);
 }
 
 /// The half vector of the one direction that stands for all of the lobe: the normal, of a stretched lobe turned to where the light of

@@ -14,8 +14,10 @@ struct RayState {
     uint medium;  ///< material whose volume the ray is in (MEDIUM_NONE: air) | RAY_CHANNEL | RAY_PASSED for each surface | RAY_SEES_SUN
     uint seed;    ///< of the random numbers: from the pixel and the branches taken, never from the place in a queue
     uint cone;    ///< at the ray's start (cone.glsl)
+    float density;  ///< of its direction, per steradian, where the environment's light is also found otherwise; 0: it is not; < 0: only
+    uint scattered;  ///< diffuse bounces so far
 };
-SHARED_SIZE(RayState, 24);
+SHARED_SIZE(RayState, 32);
 #define MEDIUM_NONE 0x00ffffffu
 #define RAY_MEDIUM 0x00ffffffu
 #define RAY_CHANNEL 0x03000000u  // 0: all colours; 1, 2, 3 times RAY_CHANNEL_UNIT: red, green, blue alone (dispersion)
@@ -45,8 +47,10 @@ struct PathBranches {
     uint child0;
     vec3 weight1;
     uint child1;
+    vec3 weight2;  ///< of scattered light
+    uint child2;
 };
-SHARED_SIZE(PathBranches, 32);
+SHARED_SIZE(PathBranches, 48);
 #define NO_CHILD 0xffffffffu
 
 /// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
@@ -61,7 +65,8 @@ SHARED_SIZE(PathBranches, 32);
 #define QUEUE_CUT_REFLECTION 24u  // rays that are not traced because the last level is reached
 #define QUEUE_CUT_REFRACTION 25u
 #define QUEUE_CROWDED 26u  // rays in more media than a stack holds
-#define QUEUE_COUNTERS 27u
+#define QUEUE_DIFFUSE 27u
+#define QUEUE_COUNTERS 28u
 /// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u

@@ -11,6 +11,9 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
+layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
+layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
 #define SCENE_WITH_TRIANGLES
@@ -37,37 +40,60 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
-#include "path/lighting.glsl"
+#include "path/emitters.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
 #include "view/seen.glsl"
 #include "view/camera_start.glsl"
 #include "common/last_group.glsl"
 
-shared uint group_counts[4];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's
+shared uint group_counts[5];  // of the workgroup: reflection, refraction, shadow rays; of them the sky's; diffuse
 shared uint group_cut[2];     // reflection, refraction that the last level cuts off
 shared uint group_coats;      // of the refractions those that clear coats mirror
 shared uint group_first;
 shared uint group_first_light;
 
-bool samplesMicrofacets() { return frame[0].spp > 1u; }
+bool samplesMicrofacets() { return (frame[0].effects & EFFECT_SAMPLED) != 0u; }
+
+vec2 randomAt(uint seed, uint purpose) {
+    return randomPair(seed, params.level, params.sample_index, frame[0].sample_bits, purpose, frame[0].seed);
+}
+
+/// What rays of lobes bring counts by the balance heuristic, since light is also found otherwise. What sees a sharp image of the
+/// environment sees it filtered by its cone: the sun's disc in a curved coat would be noise.
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) {
+    if (!env_sampled) return environmentRadiance(direction, blur);
+    if (indirect && density < 0.0) return vec3(0);
+    if (density == 0.0) return environmentAt(direction, environmentLevelOf(unpackCone(cone).y));
+    return environmentAt(direction, 0.0) * (density / (density + environmentDensity(direction)));
+}
+
+/// On a miss.
+vec3 skyAlong(Ray ray, RayState state) {
+    const bool sees_sun = (state.medium & RAY_SEES_SUN) != 0u;
+    if (!env_sampled) return skyRadiance(ray.direction, sees_sun);
+    return environmentSeen(ray.direction, 0.0, state.density, state.cone) + (sees_sun ? sunDisc(ray.direction) : vec3(0));
+}
 
 /// The half vector: the mean one for mirrors and with one sample per pixel, else a sample of the visible normals.
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) {
     if (!isSampled(lobe)) return meanMicrofacet(lobe, view);
-    return sampleMicrofacet(lobe, view, randomPair(seed, params.sample_index, purpose));
+    return sampleMicrofacet(lobe, view, randomAt(seed, purpose));
 }
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
 float tracedPart(float roughness, float metallic) {
-    if (frame[0].spp > 1u) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
+    if (env_sampled) return 1.0;
+    if (samplesMicrofacets()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, roughness);
 }
 
-/// Has the ray come as far as it is followed? Without blended surfaces its level is its bounces.
-bool isLast(uint medium, bool passes) {
-    if (!blended || passes) return params.level >= frame[0].last_level;
-    return params.level >= min(frame[0].last_level, frame[0].bounces + (medium & RAY_PASSES) / RAY_PASSED);
+/// Has the ray come as far as it is followed? Without blended surfaces and diffuse bounces its level is its bounces.
+bool isLast(RayState state, bool passes) {
+    if (indirect && params.level >= frame[0].last_level) return true;
+    const uint levels = params.level - (indirect ? state.scattered : 0u);
+    if (!blended || passes) return levels >= frame[0].bounce_levels;
+    return levels >= min(frame[0].bounce_levels, frame[0].bounces + (state.medium & RAY_PASSES) / RAY_PASSED);
 }
 
 /// Is it bright enough, and its effect on?
@@ -75,35 +101,43 @@ bool isWanted(Branch branch, RayState state) {
     return (frame[0].effects & branch.effect) != 0u && largest(branch.weight * state.weight) >= LEAST_WEIGHT;
 }
 
-void decide(inout Branch branch, RayState state, bool passes) { branch.traced = isWanted(branch, state) && !isLast(state.medium, passes); }
+void decide(inout Branch branch, RayState state, bool passes) { branch.traced = isWanted(branch, state) && !isLast(state, passes); }
 
 /// Would it be traced if it were not too far along its path? With --bounces 0 nobody asked for it.
 bool isCut(Branch branch, RayState state, bool passes) {
-    return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state.medium, passes);
+    return frame[0].bounces > 0u && params.level > 0u && isWanted(branch, state) && isLast(state, passes);
 }
 
-/// `path_weight`: of the pixel's light that comes along the new ray.
-void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed) {
+/// `path_weight`: of the pixel's light that comes along the new ray; `scattered`: diffuse bounces up to it.
+void emitRay(uint index, Branch branch, MediaStack stack, Surface s, SurfaceId from, vec3 path_weight, uint seed, uint scattered) {
     if (index >= params.next_capacity) return;
     if (layered) next_media[index] = stack;
     const float infinity = uintBitsToFloat(0x7f800000u);
     next_rays[index] = leavingRay(s, s.position, branch.direction, infinity);
-    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone);
+    next_states[index] = RayState(path_weight, branch.medium, seed, branch.cone, branch.density, scattered);
     next_skip[index] = from;
 }
 
-/// A ray to light `index`; `seeps`: from the surface's other side.
-Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
+/// A ray to a light far away that the surface faces; `seeps`: from its other side.
+Ray lightRay(Surface s, vec3 direction, bool seeps) {
     const float infinity = uintBitsToFloat(0x7f800000u);
-    Ray ray = seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
-    if (lights[index].kind != 0u) ray.tmax = dot(lights[index].position - ray.origin, direction);
+    return seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
+}
+
+/// The same to light `index`: to where the ray meets its ball.
+Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
+    Ray ray = lightRay(s, direction, seeps);
+    if (lights[index].kind == 0u) return ray;
+    const vec3 centre = lights[index].position - ray.origin;
+    const float radius = samplesMicrofacets() ? lights[index].sine : 0.0, along = dot(centre, direction);
+    ray.tmax = along - sqrt(max(0.0, radius * radius - (dot(centre, centre) - along * along)));
     return ray;
 }
 
 /// A ray to the sky in front of the surface or behind it. One cosine-distributed direction per sample: its mean is the sky that the
 /// surface really sees.
 Ray skyRay(Surface s, uint seed, bool seeps) {
-    const vec3 sampled = cosineDirection(s.normal, randomPair(seed, params.sample_index, RANDOM_SKY));
+    const vec3 sampled = cosineDirection(s.normal, randomAt(seed, RANDOM_SKY));
     const vec3 direction = aboveSurface(sampled, s.geometric);
     const float infinity = uintBitsToFloat(0x7f800000u);
     return seeps ? leavingRay(s, s.position, -direction, infinity) : leavingRay(s, s.shadow_start, direction, infinity);
@@ -117,30 +151,84 @@ void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light
     shadow_light[index] = light;
 }
 
-/// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
-vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, out vec3 direction) {
-    const vec3 light = lampLight(index, s, m, shade, view, direction);
-    if (light == vec3(0) || (frame[0].effects & EFFECT_SHADOW) == 0u || lightSeeps(s, shade, direction)) return light;
-    return blocksItself(s, from, direction) ? vec3(0) : light;
+/// Is the surface's own triangle `from` in the way of a light?
+bool isBlocked(Surface s, Shade shade, SurfaceId from, vec3 direction) {
+    return (frame[0].effects & EFFECT_SHADOW) != 0u && !lightSeeps(s, shade, direction) && blocksItself(s, from, direction);
 }
 
-/// The light that no ray is to be traced for. `rays`: how many shadow rays the rest needs, of them `sky_rays` to the sky.
-vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint rays, out uint sky_rays) {
+/// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
+vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, out vec3 direction) {
+    vec2 random = vec2(0);
+    const bool soft = samplesMicrofacets() && lights[index].sine > 0.0;
+    if (soft) random = randomAt(seed, RANDOM_LAMP + index);
+    const vec3 light = lampLight(index, s, m, shade, view, soft, random, direction);
+    return light == vec3(0) || !isBlocked(s, shade, from, direction) ? light : vec3(0);
+}
+
+/// Has the surface neither a lobe that holds a lamp, nor anything that scatters, as mirrors and clear glass?
+bool ignoresLight(Surface s, Material m) {
+    return m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0;
+}
+
+/// One direction for the light that the surface scatters from all around. `inside`: medium behind the surface.
+Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState state, vec2 cone, uint inside) {
+    Branch branch = NO_BRANCH;
+    if (state.scattered >= frame[0].gi || params.level >= frame[0].last_level || !scattersLight(m)) return branch;
+    const float behind = shareBehind(m);
+    vec3 direction = scatteredDirection(s, behind, randomAt(state.seed, RANDOM_DIFFUSE));
+    const float density = scatteredDensity(s, behind, direction);
+    if (density <= 0.0) return branch;
+    const vec3 weight = scatteredShare(s, m, shade, view, direction) * (s.alpha / density);
+    const bool back = dot(s.normal, direction) < 0.0;
+    direction = back ? -aboveSurface(-direction, s.geometric) : aboveSurface(direction, s.geometric);
+    // What is scattered is blurred: it may show textures as coarse as that.
+    branch = branchAlong(weight, direction, back ? inside : state.medium & ~RAY_SEES_SUN, keptCone(vec2(cone.x, 1.0)), 0u, -1.0);
+    branch.traced = largest(weight * state.weight) >= LEAST_WEIGHT;
+    return branch;
+}
+
+/// Light that is drawn rather than summed up.
+struct DrawnLight {
+    LightSample environment, emitter;
+    float reach;  ///< distance to the emitter
+};
+const DrawnLight NO_DRAWN_LIGHT = DrawnLight(LightSample(vec3(0), vec3(0)), LightSample(vec3(0), vec3(0)), 0.0);
+
+/// Its light if no shadow ray is needed, one of which is counted otherwise.
+vec3 unlessTraced(inout LightSample found, Surface s, Shade shade, SurfaceId from, inout uint rays) {
+    if (found.light == vec3(0)) return vec3(0);
+    if ((frame[0].effects & EFFECT_SHADOW) == 0u) return found.light;
+    if (isBlocked(s, shade, from, found.direction))
+        found.light = vec3(0);
+    else
+        rays++;
+    return vec3(0);
+}
+
+/// The light that no ray is to be traced for. `sky`: the sky's is wanted; `rays`: how many shadow rays the rest needs, of them `sky_rays`
+/// to the sky; `found`: what is drawn for some of them.
+vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, bool sky, out uint rays, out uint sky_rays, out DrawnLight found) {
     rays = sky_rays = 0u;
-    // Mirrors and clear glass have no lobe that holds a lamp, and nothing that scatters.
-    if (m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0)
-        return vec3(0);
-    const Shade shade = shadeOf(s, m, view);
+    found = NO_DRAWN_LIGHT;
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
+        const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
         if (light == vec3(0)) continue;
         if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
         else
             sum += light;
     }
+    if (env_sampled) {
+        found.environment = environmentLight(s, m, shade, view, randomAt(seed, RANDOM_ENVIRONMENT));
+        sum += unlessTraced(found.environment, s, shade, from, rays);
+    }
+    if (emitting) {
+        found.emitter = emitterLight(s, m, shade, view, from, randomAt(seed, RANDOM_EMITTER).x, randomAt(seed, RANDOM_EMITTER_POINT), found.reach);
+        sum += unlessTraced(found.emitter, s, shade, from, rays);
+    }
+    if (env_sampled || !sky) return sum;
     vec3 front, behind;
     skyLight(s, m, shade, view, front, behind);
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + front + behind;
@@ -151,17 +239,29 @@ vec3 unshadowedLight(Surface s, Material m, vec3 view, SurfaceId from, out uint 
 
 /// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, DrawnLight found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
     if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
-    if ((frame[0].effects & EFFECT_SHADOW) != 0u)
+    if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
-            const vec3 light = arrivingLight(k, s, m, shade, view, from, direction);
+            const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
             const bool seeps = lightSeeps(s, shade, direction);
             if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, seeps), seeps ? behind : before, from, light * share);
         }
-    if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return;
+        if (env_sampled && found.environment.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.environment.direction);
+            emitLight(slot++, lightRay(s, found.environment.direction, seeps), seeps ? behind : before, from, found.environment.light * share);
+        }
+        if (emitting && found.emitter.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.emitter.direction);
+            Ray ray = lightRay(s, found.emitter.direction, seeps);
+            // Not as far as the emitter itself.
+            ray.tmax = dot(s.position - ray.origin + found.emitter.direction * found.reach, found.emitter.direction) * (1.0 - EMITTER_GAP);
+            emitLight(slot++, ray, seeps ? behind : before, from, found.emitter.light * share);
+        }
+    }
+    if (env_sampled || !sky || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     vec3 front, back;
     skyLight(s, m, shade, view, front, back);
     if (front != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, front * share);
@@ -170,12 +270,13 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, MediaSt
 
 /// Makes room in the queues for the rays of the workgroup.
 void reserve() {
-    const uint rays = group_counts[0] + group_counts[1];
+    const uint diffuse = indirect ? group_counts[4] : 0u, rays = group_counts[0] + group_counts[1] + diffuse;
     if (rays > 0u) {
         group_first = atomicAdd(queue[params.level + 1u], rays);
         const uint coats = coated ? group_coats : 0u, reflections = group_counts[0] + coats, refractions = group_counts[1] - coats;
         if (reflections > 0u) atomicAdd(queue[QUEUE_REFLECTION], reflections);
         if (refractions > 0u) atomicAdd(queue[QUEUE_REFRACTION], refractions);
+        if (diffuse > 0u) atomicAdd(queue[QUEUE_DIFFUSE], diffuse);
         if (group_first + rays > params.next_capacity) atomicOr(queue[QUEUE_OVERFLOW], OVERFLOW_PATHS);
     }
     if (group_cut[0] > 0u) atomicAdd(queue[QUEUE_CUT_REFLECTION], group_cut[0]);
@@ -201,9 +302,10 @@ struct Scattering {
     Surface surface;
     SurfaceId from;
     PathNode node;
-    Branch reflection, refraction;
-    uint reflection_slot, refraction_slot, light_slot;  ///< among the rays of the workgroup
+    Branch reflection, refraction, diffuse;
+    uint reflection_slot, refraction_slot, diffuse_slot, light_slot;  ///< among the rays of the workgroup
     uint light_rays;
+    DrawnLight found;
     MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
@@ -252,7 +354,10 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
         c.lost = transmittance(state.medium, hit.t);
     state.weight *= c.lost;
     c.path_weight = state.weight;
-    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, c.reflection, c.refraction);
+    float emission = 1.0;
+    if (emitting && state.density != 0.0 && materials[c.surface.material].emissive != vec3(0))
+        emission = emissionShare(c.surface, c.from, ray.direction, hit.t, state.density);
+    c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, emission, c.reflection, c.refraction);
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
     // What is not traced sees the environment.
@@ -260,52 +365,63 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if (!c.refraction.traced) c.node.radiance += untracedLight(c.refraction);
     uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
-    if ((m.flags & MATERIAL_UNLIT) != 0u)
+    if ((m.flags & MATERIAL_UNLIT) != 0u) {
         c.node.flags |= NODE_UNLIT;
-    else
-        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, -ray.direction, c.from, c.light_rays, sky_rays);
+    } else if (!ignoresLight(c.surface, m)) {
+        const Shade shade = shadeOf(c.surface, m, -ray.direction);
+        if (indirect) c.diffuse = diffuseBranch(c.surface, m, shade, -ray.direction, state, cone, mediumBehind(c.surface, m, state.medium));
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state.seed, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
+    }
     c.node.radiance *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
     if (c.refraction.traced) c.refraction_slot = atomicAdd(group_counts[1], dispersive && c.refraction.dispersed ? 3u : 1u);
     if (coat && c.refraction.traced) atomicAdd(group_coats, 1u);
+    if (indirect && c.diffuse.traced) c.diffuse_slot = atomicAdd(group_counts[4], 1u);
     if (c.light_rays > 0u) c.light_slot = atomicAdd(group_counts[2], c.light_rays);
     if (sky_rays > 0u) atomicAdd(group_counts[3], sky_rays);
 }
 
 /// The rays of red, green and blue, from `first` on.
-void emitDispersed(uint first, Scattering c, uint seed) {
+void emitDispersed(uint first, Scattering c, uint seed, uint scattered) {
     for (uint channel = 1u; channel <= 3u; channel++) {
         Branch one = c.refraction;
         one.direction = channel == 1u ? one.red : (channel == 2u ? one.direction : one.blue);
         one.medium += channel * RAY_CHANNEL_UNIT;
         const vec3 weight = c.path_weight * one.weight * vec3(equal(uvec3(channel), uvec3(1, 2, 3)));
-        emitRay(first + channel - 1u, one, c.behind, c.surface, c.from, weight, seed);
+        emitRay(first + channel - 1u, one, c.behind, c.surface, c.from, weight, seed, scattered);
     }
 }
 
 /// Puts the next level's rays into the room that reserve() made.
-void emitBranches(uint i, Scattering c, uint seed) {
-    PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD);
+void emitBranches(uint i, Scattering c, RayState state) {
+    PathBranches children = PathBranches(c.reflection.weight * c.lost, NO_CHILD, c.refraction.weight * c.lost, NO_CHILD, vec3(0), NO_CHILD);
     if (c.reflection.traced) {
         children.child0 = group_first + c.reflection_slot;
-        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, hash3(uvec3(seed, 0u, params.level)).x);
+        emitRay(children.child0, c.reflection, c.before, c.surface, c.from, c.path_weight * c.reflection.weight, branchSeed(state.seed, 0u, params.level), state.scattered);
     }
     if (c.refraction.traced) {
         children.child1 = group_first + group_counts[0] + c.refraction_slot;
-        const uint next_seed = hash3(uvec3(seed, 1u, params.level)).x;
+        const uint seed = branchSeed(state.seed, 1u, params.level);
         if (dispersive && c.refraction.dispersed)
-            emitDispersed(children.child1, c, next_seed);
+            emitDispersed(children.child1, c, seed, state.scattered);
         else
-            emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight * c.refraction.weight, next_seed);
+            emitRay(children.child1, c.refraction, isCoat(c.refraction) ? c.before : c.behind, c.surface, c.from, c.path_weight * c.refraction.weight, seed, state.scattered);
+    }
+    if (indirect && c.diffuse.traced) {
+        children.child2 = group_first + group_counts[0] + group_counts[1] + c.diffuse_slot;
+        children.weight2 = c.diffuse.weight * c.lost;
+        const bool back = dot(c.surface.normal, c.diffuse.direction) < 0.0 && transmits(materialOf(c.surface));
+        emitRay(children.child2, c.diffuse, back ? c.behind : c.before, c.surface, c.from, c.path_weight * c.diffuse.weight, branchSeed(state.seed, 2u, params.level),
+                state.scattered + 1u);
     }
     branches[i] = children;
 }
 
 void main() {
     const uint i = GLOBAL_INDEX, lane = gl_LocalInvocationIndex;
-    if (lane < 4u) group_counts[lane] = 0u;
+    if (lane < 5u) group_counts[lane] = 0u;
     if (lane < 2u) group_cut[lane] = 0u;
     if (coated && lane == 0u) group_coats = 0u;
     barrier();
@@ -315,10 +431,11 @@ void main() {
     const bool valid = startOf(i, ray, state, hit);
     Scattering c;
     c.node = PathNode(vec3(0), 0u, 0u);
-    c.reflection = c.refraction = NO_BRANCH;
+    c.reflection = c.refraction = c.diffuse = NO_BRANCH;
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
-    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
+    c.found = NO_DRAWN_LIGHT;
+    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyAlong(ray, state);
     if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
     if (valid && hit.triangle != NO_TRIANGLE) {
         c.from = SurfaceId(hit.instance, hit.triangle);
@@ -328,15 +445,16 @@ void main() {
     if (lane == 0u) reserve();
     barrier();
     if (valid) {
-        if (c.reflection.traced || c.refraction.traced) {
+        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced)) {
             c.node.flags |= NODE_BRANCHES;
             if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
-            emitBranches(i, c, state.seed);
+            emitBranches(i, c, state);
         }
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.before, c.behind, c.from, state.seed);
+            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
+                       c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -132,13 +132,6 @@ uvec3 hash3(uvec3 v) {
     return v;
 }
 
-/// Sample `index` of a place in the tree of rays: the R2 sequence, shifted by a hash of the place's seed and the purpose.
-vec2 randomPair(uint seed, uint index, uint purpose) {
-    const uvec3 h = hash3(uvec3(seed, purpose, 0x9e3779b9u));
-    const uvec2 step = uvec2(3242174889u, 2447445414u);  // 2^32 / g, 2^32 / g^2, g the plastic number
-    return vec2((h.xy + step * index) >> 8u) * (1.0 / 16777216.0);
-}
-
 /// Tone curves; input exposed, linear; output linear in [0, 1].
 vec3 tonemapAces(vec3 c) {  // Narkowicz: ACES filmic tone mapping curve, 2015
     c = min(c, vec3(1e6));  // white long before; squares would overflow

@@ -79,7 +79,13 @@
 #define RANDOM_SKY 2
 #define RANDOM_COAT 3
 #define RANDOM_ENVIRONMENT 4
+#define RANDOM_DIFFUSE 5
+#define RANDOM_EMITTER 6
+#define RANDOM_EMITTER_POINT 7
 #define RANDOM_LAMP 16  // and the lamp's index
+
+// Of the way to a point of an emissive triangle, what a shadow ray leaves out so that it does not meet the triangle.
+#define EMITTER_GAP 1e-4
 
 // The seed of a path's random numbers: a code of the pixel above RANDOM_BRANCH_BITS that tell the branches taken.
 #define RANDOM_BRANCH_BITS 8

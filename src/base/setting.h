@@ -18,8 +18,8 @@ struct Setting {
 namespace setting {
 inline constexpr Setting animation{"animation"}, batch{"batch"}, block{"block"}, bounces{"bounces"}, builder{"builder"},
     camera{"camera"}, depth{"depth"}, device{"device"}, double_sided{"double-sided"}, effects{"effects"}, eye{"eye"},
-    fov{"fov"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, routing{"routing"}, size{"size"}, spp{"spp"}, time{"time"},
-    tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
+    fov{"fov"}, gi{"gi"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, routing{"routing"}, size{"size"}, spp{"spp"},
+    time{"time"}, tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
     variant{"variant"}, visibility{"visibility"};
 }  // namespace setting
 

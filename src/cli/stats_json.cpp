@@ -144,6 +144,7 @@ Json rays_json(const RayCounts& rays) {
     return {{"primary", rays.primary},
             {"reflection", rays.reflection},
             {"refraction", rays.refraction},
+            {"diffuse", rays.diffuse},
             {"shadow", rays.shadow},
             {"ambient", rays.ambient},
             {"cut", {{"reflection", rays.cut_reflection}, {"refraction", rays.cut_refraction}}},

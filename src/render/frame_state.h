@@ -38,8 +38,17 @@ struct FrameState {
     uint32_t lights_per_hit() const {
         if (!tracer->traces()) return 0;
         const uint32_t skies = scene.base_colors.kinds & MATERIALS_SEEPING ? 2 : 1;  // in front, and behind
-        return (settings.shadow ? uint32_t(scene.light_list.size()) : 0) + (settings.ambient ? skies : 0);
+        const uint32_t lamps = settings.shadow ? scene.lamps(env_sampled()) : 0;
+        const uint32_t drawn = settings.shadow && emitting() ? 1 : 0;
+        if (env_sampled()) return lamps + drawn + (settings.shadow ? 1 : 0);
+        return lamps + drawn + (settings.ambient ? skies : 0);
     }
+    /// Is the environment's light found by sampling? Cube maps hold it blurred.
+    bool env_sampled() const { return settings.env_mode == EnvironmentMode::sampled && !maps; }
+    /// Are diffuse bounces followed?
+    bool indirect() const { return settings.gi > 0 && tracer->traces(); }
+    /// Is light looked for on emissive triangles?
+    bool emitting() const { return scene.emitters() > 0 && !maps && samples_emitters(settings); }
     /// Are rays traced that may be in several media at once?
     bool layered() const { return tracer->traces() && (scene.layered || constants.camera_media != glm::uvec2(0)); }
     uint64_t pixels() const { return uint64_t(settings.width) * settings.height; }

@@ -1,10 +1,12 @@
 #include "render/gpu_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
 
+#include "assembly/emitters.h"
 #include "base/error.h"
 #include "path/media_params.h"
 #include "path/tables.h"
@@ -12,6 +14,7 @@
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
+#include "scene/pi.h"
 #include "scene/picture.h"
 #include "scene/sidedness.h"
 #include "view/view_params.h"
@@ -26,10 +29,21 @@ GpuLight gpu_light(const Light& light) {
     g.direction = light.direction;
     g.range = std::isfinite(light.range) ? light.range : 1e18f;
     g.color = light.color;
+    g.sine = light.kind == Light::Kind::directional ? std::sin(light.radius) : light.radius;
     // KHR_lights_punctual, section "Inner and Outer Cone Angles".
     g.cone_scale = 1 / std::max(0.001f, std::cos(light.inner_cone) - std::cos(light.outer_cone));
     g.cone_offset = -std::cos(light.outer_cone) * g.cone_scale;
     return g;
+}
+
+/// As the lookups hold them.
+std::vector<glm::vec4> emitter_table(const Emitters& emitters) {
+    std::vector<glm::vec4> table;
+    table.reserve(emitters.size());
+    for (const Emitter& e : emitters)
+        table.emplace_back(std::bit_cast<float>(e.instance), std::bit_cast<float>(e.triangle), e.cumulative,
+                           e.probability);
+    return table;
 }
 
 /// Instances are in the order of their bodies.
@@ -99,9 +113,23 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
     upload_media(commands);
     static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
-    lookups = Buffer(device, "tables and environment map", sizeof kTables + env.texels.size() * sizeof(glm::vec4));
+    const std::vector<glm::vec4> emitters = emitter_table(emitters_of(scene, assembly));
+    lookups = Buffer(
+        device, "tables and environment map",
+        sizeof kTables + (env.texels.size() + env.distribution.quads.size() + emitters.size()) * sizeof(glm::vec4));
     commands.upload(lookups, std::span<const float>(kTables[0], sizeof kTables / sizeof(float)));
     commands.upload(lookups, std::span<const glm::vec4>(env.texels), sizeof kTables);
+    const uint64_t texels_end = sizeof kTables + env.texels.size() * sizeof(glm::vec4);
+    if (!env.distribution.quads.empty())
+        commands.upload(lookups, std::span<const glm::vec4>(env.distribution.quads), texels_end);
+    env_quads_ = uint32_t(texels_end / sizeof(glm::vec4));
+    first_emitter_ = env_quads_ + uint32_t(env.distribution.quads.size());
+    emitters_ = uint32_t(emitters.size());
+    if (emitters_ > 0)
+        commands.upload(lookups, std::span<const glm::vec4>(emitters), first_emitter_ * sizeof(glm::vec4));
+    env_depth_ = env.distribution.depth;
+    env_is_image_ = env.is_image;
+    if (env.is_pyramid) env_texels_ = float(env.height) / kPi;
     env_size_ = {env.width, env.height};
     env_levels_ = env.levels;
     sun_cosine_ = env.sun_cosine;
@@ -172,14 +200,23 @@ uint64_t GpuScene::bytes() const {
     return sum;
 }
 
-void GpuScene::describe(Frame& frame) const {
+uint32_t GpuScene::lamps(bool env_sampled) const {
+    // What stands for a part of an image is found in it.
+    return uint32_t(light_list.size() - (env_sampled && env_is_image_ ? environment_lights_.size() : 0));
+}
+
+void GpuScene::describe(Frame& frame, bool env_sampled) const {
     frame.tree = instances.tree();
     frame.draws = uint32_t(draws.size());
-    frame.lights = uint32_t(light_list.size());
+    frame.lights = lamps(env_sampled);
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;
     frame.sun_cosine = sun_cosine_;
-    frame.rough_limit = rough_limit_;
+    frame.rough_limit = env_sampled && env_is_image_ ? std::numeric_limits<float>::max() : rough_limit_;
+    frame.env_quads = env_quads_;
+    frame.env_depth = env_depth_;
+    frame.first_emitter = first_emitter_;
+    frame.env_texels = env_texels_;
     frame.sun_direction = sun_direction_;
     frame.sun_radiance = sun_radiance_;
     std::copy(irradiance_.begin(), irradiance_.end(), frame.irradiance);

@@ -56,7 +56,12 @@ class GpuScene {
     uint64_t bytes() const;
 
     /// The environment's and the instances' part of the frame constants.
-    void describe(Frame& frame) const;
+    /// `env_sampled`: the environment's distribution is used.
+    void describe(Frame& frame, bool env_sampled) const;
+    /// Lamps that a frame with or without it has, the sun included.
+    uint32_t lamps(bool env_sampled) const;
+    /// Triangles that light is looked for on.
+    uint32_t emitters() const { return emitters_; }
 
   private:
     void upload_media(Commands& commands);
@@ -72,7 +77,9 @@ class GpuScene {
     MediaPieces media_pieces_;
     std::vector<GpuLight> environment_lights_;
     glm::uvec2 env_size_{0};
-    uint32_t env_levels_ = 0;
+    uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0;
+    bool env_is_image_ = false;
+    float env_texels_ = 0;
     float sun_cosine_ = 2, rough_limit_ = 1e30f;
     glm::vec3 sun_direction_{0, 1, 0}, sun_radiance_{0};
     std::array<glm::vec3, 9> irradiance_{};

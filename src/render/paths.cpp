@@ -32,10 +32,15 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           Binding::if_used("media_ranks", scene.media_ranks),
                           Binding::if_used("next_media", next.media),
                           Binding::if_used("shadow_media", queues.lights().media)});
+    // Cones also filter what mirrors show of the environment.
+    const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() ? MATERIALS_FILTERED : 0);
     const Pass& pass = f.device.pass("scatter", {{"camera", camera},
                                                  {"by_number", camera && f.view.by_number()},
                                                  {"layered", layered},
-                                                 scene.base_colors.constant()});
+                                                 {"env_sampled", f.env_sampled()},
+                                                 {"indirect", f.indirect()},
+                                                 {"emitting", f.emitting()},
+                                                 {"material_kinds", kinds}});
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else

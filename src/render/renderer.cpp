@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "base/error.h"
@@ -32,6 +33,7 @@ void check_settings(const Device& device, const GpuScene& scene, const RenderSet
             double(device.limits().maxStorageBufferRange) / (1 << 20), setting::size);
     static_assert(kBounceLimits.most == QUEUE_LEVELS - 1);
     check_limits(kBounceLimits, setting::bounces, settings.bounces);
+    check_limits(kBounceLimits, setting::gi, settings.gi);
     check_limits(kSampleLimits, setting::spp, settings.spp);
     if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
         fail("the device '{}' cannot find what pixels see by compute shaders{}: use {} raster", device.info().name,
@@ -173,7 +175,7 @@ void Renderer::Impl::prepare_view() {
     f.last_level = f.tracer->traces() ? last_level(settings, f.scene.has_blended) : 0;
     box = settings.bounds ? *settings.bounds : bounds(source, moment);
     Frame& frame = f.constants = {};
-    f.scene.describe(frame);
+    f.scene.describe(frame, f.env_sampled());
     describe_view(frame,
                   make_view(settings.camera, float(settings.width) / float(settings.height), box.lower, box.upper),
                   settings.height, settings.spp);
@@ -182,7 +184,8 @@ void Renderer::Impl::prepare_view() {
     // A band's largest queue entries are rays and branches, or the walls of media; bands keep each queue below what the
     // device binds, with room to grow.
     const uint64_t entry = f.layered() ? sizeof(MediaWall) : sizeof(Ray);
-    const uint64_t each = f.scene.base_colors.kinds & MATERIALS_DISPERSIVE ? 4 : 2;  // rays from a hit
+    const uint64_t each =
+        (f.scene.base_colors.kinds & MATERIALS_DISPERSIVE ? 4 : 2) + (f.indirect() ? 1 : 0);  // rays from a hit
     const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (each * entry),
                                     uint64_t(f.queues.most_lights()) / std::max(f.lights_per_hit(), 1u)});
     f.bands = Bands(settings.width, settings.height, most);
@@ -191,9 +194,14 @@ void Renderer::Impl::prepare_view() {
     frame.row_pixels = f.bands.row_pixels();
     const bool maps = f.maps != nullptr;
     frame.effects = (f.tracer->traces() || maps ? effects_of(settings, maps) : 0) |
-                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u);
-    frame.spp = f.maps ? 1 : settings.spp;  // a blurred cube map is no sample of a rough lobe but all of it
+                    (settings.energy_compensation ? EFFECT_COMPENSATION : 0u) |
+                    (is_sampled(settings) && !maps ? EFFECT_SAMPLED : 0u);  // a blurred cube map is all of a rough lobe
+    frame.sample_bits = uint32_t(std::bit_width(settings.spp - 1));
+    frame.seed = settings.seed;
     frame.bounces = settings.bounces;
+    frame.bounce_levels = bounce_levels(settings, f.scene.has_blended);
+    frame.emitters = f.emitting() ? f.scene.emitters() : 0;
+    frame.gi = f.indirect() ? settings.gi : 0;
     frame.last_level = f.last_level;
     f.commands.upload(f.view.target.frame, std::span<const Frame>(&frame, 1));
 }
@@ -207,8 +215,9 @@ void Renderer::Impl::prepare_maps() {
 
 void Renderer::Impl::prepare_queues() {
     const uint32_t face = f.maps ? f.maps->face() : 0;
-    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1, f.settings.bounces + 1,
-                      f.scene.splits, f.lights_per_hit(), f.layered()});
+    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1,
+                      f.settings.bounces + f.settings.gi + 1, f.scene.splits || f.indirect(), f.lights_per_hit(),
+                      f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
 }
 
@@ -306,6 +315,7 @@ void Renderer::Impl::count_rays() {
     if (f.counter) f.counter->finish();
     rays.reflection += queues.count(QUEUE_REFLECTION);
     rays.refraction += queues.count(QUEUE_REFRACTION);
+    rays.diffuse += queues.count(QUEUE_DIFFUSE);
     rays.shadow += queues.count(QUEUE_LIGHT) - queues.count(QUEUE_AMBIENT);
     rays.ambient += queues.count(QUEUE_AMBIENT);
     rays.cut_reflection += queues.count(QUEUE_CUT_REFLECTION);

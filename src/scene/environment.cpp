@@ -125,8 +125,7 @@ Environment color_environment(const glm::vec3& radiance) {
 
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels) {
     Environment environment;
-    environment.is_image = true;
-    environment.is_pyramid = true;
+    environment.is_image = environment.is_pyramid = true;
     environment.width = width;
     environment.height = height;
     environment.texels.assign(pixels.begin(), pixels.end());

@@ -9,9 +9,13 @@
 
 namespace peelray {
 
-uint32_t last_level(const PictureSettings& settings, bool has_blended) {
+uint32_t bounce_levels(const PictureSettings& settings, bool has_blended) {
     if (!settings.refraction) return settings.reflection ? settings.bounces : 0;
     return std::min(settings.bounces + (has_blended ? BLENDED_PASSED : 0u), uint32_t(kBounceLimits.most));
+}
+
+uint32_t last_level(const PictureSettings& settings, bool has_blended) {
+    return std::min(bounce_levels(settings, has_blended) + settings.gi, uint32_t(kBounceLimits.most));
 }
 
 float least_roughness(const Scene& scene, const Material& m) {

@@ -24,11 +24,12 @@ struct PictureSettings {
     /// What the view's near and far planes follow from, the same for all frames of an animation; none: the triangles'
     /// box.
     std::optional<Box> bounds;
-    uint32_t bounces = 4;                                      ///< secondary rays in a row, 0 to 16
-    uint32_t spp = 1;                                          ///< samples per pixel, at least 1
-    uint32_t seed = 0;                                         ///< of the random numbers
+    uint32_t bounces = 4;  ///< secondary rays in a row, 0 to 16
+    uint32_t spp = 1;      ///< samples per pixel, at least 1
+    uint32_t seed = 0;     ///< of the random numbers
     EnvironmentMode env_mode = EnvironmentMode::open;
     bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
+    uint32_t gi = 0;                                           ///< diffuse bounces in a row that are traced, 0 to 16
     bool ambient = false;             ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
     bool energy_compensation = true;  ///< light that rough surfaces scatter several times is not lost (Turquin, 2019)
     float exposure = 0;               ///< stops; applies to the encoded picture only
@@ -53,16 +54,17 @@ struct Aovs {
 };
 
 struct RayCounts {
-    uint64_t primary = 0, reflection = 0, refraction = 0, shadow = 0, ambient = 0;
+    uint64_t primary = 0, reflection = 0, refraction = 0, diffuse = 0, shadow = 0, ambient = 0;
     /// Not traced, and not among those above: would have been, if `bounces` did not end there.
     uint64_t cut_reflection = 0, cut_refraction = 0;
     /// Reflected and refracted ones that were in more than MEDIA_TOGETHER media at once.
     uint64_t crowded = 0;
-    uint64_t secondary() const { return reflection + refraction + shadow + ambient; }
+    uint64_t secondary() const { return reflection + refraction + diffuse + shadow + ambient; }
     RayCounts& operator+=(const RayCounts& b) {
         primary += b.primary;
         reflection += b.reflection;
         refraction += b.refraction;
+        diffuse += b.diffuse;
         shadow += b.shadow;
         ambient += b.ambient;
         cut_reflection += b.cut_reflection;
@@ -86,7 +88,16 @@ inline bool is_sampled(const PictureSettings& settings) {
     return settings.spp > 1 || settings.env_mode == EnvironmentMode::sampled;
 }
 
-/// The last level of the tree of rays: bounces, and the blended surfaces that a path goes straight through.
+/// Do emissive triangles light the scene? Without samples their light would be noise.
+inline bool samples_emitters(const PictureSettings& settings) {
+    return is_sampled(settings) || settings.gi > 0;
+}
+
+/// Levels of the tree of rays that reflections and refractions take: bounces, and the blended surfaces that a path goes
+/// straight through.
+uint32_t bounce_levels(const PictureSettings& settings, bool has_blended);
+
+/// The last level of the tree: those, and diffuse bounces.
 uint32_t last_level(const PictureSettings& settings, bool has_blended);
 
 /// Does light pass through the material, somewhere at least?

@@ -243,7 +243,7 @@ inline void add_scene(SettingList& list, SceneArguments& a) {
 /// What is traced, and of what.
 struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
-    uint32_t bounces = 4, spp = 1, seed = 0;
+    uint32_t bounces = 4, gi = 0, spp = 1, seed = 0;
     std::optional<MaterialOverride> material;
     bool floor = false;
     bool no_energy_compensation = false;
@@ -268,6 +268,11 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                 {.name = "bounces",
                  .group = group,
                  .help = "reflections and refractions in a row, 0 to 16",
+                 .limits = kBounceLimits});
+    add_setting(list, a.gi,
+                {.name = "gi",
+                 .group = group,
+                 .help = "indirect light: diffuse bounces in a row, 0 to 16",
                  .limits = kBounceLimits});
     add_setting(list, a.spp,
                 {.name = "spp",

@@ -27,6 +27,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;
+    settings.gi = a.gi;
     settings.spp = a.spp;
     settings.seed = a.seed;
     settings.repeat = a.repeat;
