@@ -82,20 +82,21 @@ glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& s
     return share * (1 - seen.coat) + coat_reflectance(m, v_h) * highlight(coat_lobe(s), view, to_light);
 }
 
-glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path& path, const Meeting& meeting) {
-    const Optics& m = s.optics;
-    if (m.unlit) return glm::dvec3(0);
-    const Seen seen = this->seen(s, path);
-    const Lit at{s, triangle, path, seen, meeting.wall && m.transmits() && !m.thin ? meeting.behind : path.media};
+/// `sky`: that of the environment where no direction to it is drawn, which else a diffuse ray brings.
+glm::dvec3 Shader::direct_light(const Lit& at, bool sky) {
     glm::dvec3 sum(0);
     for (uint32_t i = 0; i < context_.lights.size(); i++) {
         const Light& light = context_.lights[i];
         const auto [irradiance, direction] = incidence(light, i, at);
         if (irradiance == glm::dvec3(0)) continue;
-        const glm::dvec3 reflected = irradiance * reflectance(s, path, seen, direction);
-        if (reflected != glm::dvec3(0)) sum += reflected * arriving(at, direction, &light);
+        const glm::dvec3 reflected = irradiance * reflectance(at.surface, at.path, at.seen, direction);
+        if (reflected == glm::dvec3(0)) continue;
+        const Start start = start_to(at, direction);
+        sum += reflected * arriving(at, start, direction, reach(light, start.point, direction));
     }
-    return sum + (context_.samples_environment() ? environment_light(at) : sky_light(at));
+    if (context_.samples_emitters()) sum += emitter_light(at);
+    if (context_.samples_environment()) return sum + environment_light(at);
+    return sky ? sum + sky_light(at) : sum;
 }
 
 /// Of a lamp with a size, from one of the directions in which it is seen; `index`: of the lamp.
@@ -139,17 +140,19 @@ double Shader::reach(const Light& light, const glm::dvec3& start, const glm::dve
     return radius > 0 ? along - std::sqrt(std::max(0.0, inside2)) : along;
 }
 
-/// Share of the light along a direction that arrives, from a lamp or, without one, from the environment.
-glm::dvec3 Shader::arriving(const Lit& at, const glm::dvec3& direction, const Light* lamp) {
+Shader::Start Shader::start_to(const Lit& at, const glm::dvec3& direction) {
     const Surface& s = at.surface;
-    if (!context_.settings.shadow) return glm::dvec3(1);
     const bool from_behind = s.optics.behind > 0 && glm::dot(s.normal, direction) < 0;
+    return {from_behind ? s.start(s.position, direction) : s.lit_start(), from_behind};
+}
+
+/// Share of the light that arrives from as far away.
+glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance) {
+    if (!context_.settings.shadow) return glm::dvec3(1);
     // A triangle that turns away from the light is itself in the way where it is no part of a bulge.
-    if (!from_behind && context_.surfaces.blocks_itself(s, at.triangle, direction)) return glm::dvec3(0);
+    if (!start.from_behind && context_.surfaces.blocks_itself(at.surface, at.triangle, direction)) return glm::dvec3(0);
     rays_.shadow++;
-    const glm::dvec3 start = from_behind ? s.start(s.position, direction) : s.lit_start();
-    return visibility(start, direction, lamp ? reach(*lamp, start, direction) : infinity, at.triangle,
-                      from_behind ? at.behind : at.path.media);
+    return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
 }
 
 /// What the surface mirrors is not available for diffuse light.

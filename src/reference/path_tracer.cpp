@@ -39,6 +39,7 @@ void check_settings(const PictureSettings& s) {
         fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 ({})", s.width, s.height,
              setting::size);
     check_limits(kBounceLimits, setting::bounces, s.bounces);
+    check_limits(kBounceLimits, setting::gi, s.gi);
     check_limits(kSampleLimits, setting::spp, s.spp);
 }
 
@@ -119,9 +120,11 @@ struct PathTracer::Impl {
     bool has_blended;
     const Scene& scene;
     const Environment& environment;
+    EmitterList emitters;
     Moment placed;  ///< only what MediaPieces reads
 
-    Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment)
+    Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment,
+         std::span<const Emitter> emitters)
         : geometry(geometry),
           bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)),
           surfaces(scene, geometry),
@@ -132,7 +135,8 @@ struct PathTracer::Impl {
           has_blended(std::ranges::any_of(geometry.materials,
                                           [&](uint32_t material) { return scene.materials[material].blended; })),
           scene(scene),
-          environment(environment) {
+          environment(environment),
+          emitters(emitters, geometry.triangles.size()) {
         placed.worlds = moment.worlds;
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
@@ -247,8 +251,8 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
 }
 
 PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry,
-                       const Environment& environment)
-    : impl_(std::make_unique<Impl>(scene, moment, geometry, environment)) {}
+                       const Environment& environment, std::span<const Emitter> emitters)
+    : impl_(std::make_unique<Impl>(scene, moment, geometry, environment, emitters)) {}
 
 PathTracer::~PathTracer() = default;
 
@@ -267,6 +271,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->albedos,
                                 impl_->surroundings,
                                 impl_->lights_for(settings),
+                                impl_->emitters,
                                 impl_->rough_limit_for(settings),
                                 impl_->media,
                                 settings,

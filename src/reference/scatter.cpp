@@ -11,21 +11,21 @@ using namespace optics;
 
 namespace {
 
-/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
-/// unless the environment's light is drawn too.
-double traced_part(double roughness, double metallic, const RenderContext& context) {
-    if (context.samples_environment()) return 1;
-    if (context.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
-    const double x =
-        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
-    return 1 - x * x * (3 - 2 * x);
-}
-
 glm::dvec3 mirrored(const glm::dvec3& direction, const glm::dvec3& normal) {
     return direction - 2 * glm::dot(direction, normal) * normal;
 }
 
 }  // namespace
+
+/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
+/// unless the environment's light is drawn too.
+double Shader::traced_part(double roughness, double metallic) const {
+    if (context_.samples_environment()) return 1;
+    if (context_.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
+    const double x =
+        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
+    return 1 - x * x * (3 - 2 * x);
+}
 
 Lobe Shader::lobe_of(const Surface& s) {
     const glm::dvec2 alphas = s.optics.alphas();
@@ -50,7 +50,7 @@ glm::dvec3 Shader::half_vector(const Lobe& lobe, const Path& path, uint32_t purp
 /// Path::density of what a lobe reflects. Where a coat shares a branch with what is below, it has none.
 double Shader::reflection_density(const Surface& s, const Lobe& lobe, const Path& path,
                                   const glm::dvec3& reflected) const {
-    if (!context_.samples_environment() || s.optics.shares_branch()) return 0;
+    if (!context_.sampled() || s.optics.shares_branch()) return 0;
     return lobe.density(-path.direction, reflected);
 }
 
@@ -145,7 +145,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     reflection.traced = is_traced(reflection, path);
     reflection.blur = sampled ? 0 : roughness;
 
-    out.radiance = m.emissive;
+    out.radiance = m.emissive * emission_share(path, meeting.hit);
     if (!transmits) out.radiance += fade(reflection, roughness, m.metallic);
     const auto direction = transmits ? refracted(s, path, meeting, h) : std::nullopt;
     const bool comes_apart = disperses(s, path, meeting);
@@ -171,7 +171,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
 
 /// What the untraced part of a wide lobe sees, at once; the branch keeps the rest.
 glm::dvec3 Shader::fade(Branch& branch, double roughness, double metallic) const {
-    const double part = traced_part(roughness, metallic, context_);
+    const double part = traced_part(roughness, metallic);
     if (part == 1) return glm::dvec3(0);
     const glm::dvec3 seen = branch.weight * (1 - part) * context_.surroundings.radiance(branch.direction, roughness);
     branch.weight *= part;

@@ -51,8 +51,20 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     };
     if (scattered.split.empty()) second(whole);
     for (const Branch& channel : scattered.split) second(channel);
-    sum += surface.optics.alpha * direct_light(surface, hit.triangle, path, meeting);
+    if (!surface.optics.unlit) sum += scattered_light(surface, path, meeting);
     return kept * sum;
+}
+
+/// Light from lamps and from what else is not mirrored.
+glm::dvec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& meeting) {
+    const Seen seen = this->seen(s, path);
+    const bool volume = meeting.wall && s.optics.transmits() && !s.optics.thin;
+    const Lit at{s, meeting.hit.triangle, path, seen, volume ? meeting.behind : path.media};
+    const Branch diffuse = diffuse_branch(at);
+    const glm::dvec3 direct = s.optics.alpha * direct_light(at, !diffuse.traced);
+    if (!diffuse.traced) return direct;
+    rays_.diffuse++;
+    return direct + follow(diffuse, s, path, at.triangle, 2);
 }
 
 /// A branch that no ray follows sees the environment.
@@ -62,7 +74,8 @@ glm::dvec3 Shader::untraced(const Branch& branch) const {
            context_.surroundings.radiance(branch.direction, blur);
 }
 
-/// The light of one of a hit's branches; `which`: of the two, a channel being part of the second.
+/// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
+/// part of, 2 the diffuse one.
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
@@ -78,15 +91,18 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.density = branch.density;
     next.seed = branch_seed(path.seed, which, path.level);
     next.level = path.level + 1;
+    next.scattered = path.scattered + (which == 2);
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
     return branch.weight * radiance(next, hit(next));
 }
 
-/// Has the path come as far as it is followed?
+/// Has the path come as far as it is followed? Diffuse bounces are counted apart.
 bool Shader::is_last(const Branch& branch, const Path& path) const {
-    const uint32_t last = last_level(context_.settings, context_.has_blended);
-    return path.level >= (branch.passes ? last : std::min(last, context_.settings.bounces + path.passed));
+    const PictureSettings& settings = context_.settings;
+    if (path.level >= last_level(settings, context_.has_blended)) return true;
+    const uint32_t most = bounce_levels(settings, context_.has_blended);
+    return path.level - path.scattered >= (branch.passes ? most : std::min(most, settings.bounces + path.passed));
 }
 
 /// Is it bright enough, and its effect on?

@@ -7,6 +7,7 @@
 
 #include "reference/albedos.h"
 #include "reference/bvh.h"
+#include "reference/emitter_list.h"
 #include "reference/media.h"
 #include "reference/optics.h"
 #include "reference/random_numbers.h"
@@ -23,6 +24,7 @@ struct RenderContext {
     const Albedos& albedos;
     const Surroundings& surroundings;
     std::span<const Light> lights;
+    const EmitterList& emitters;
     double rough_limit;  ///< radiance that rays after a rough surface see of the environment at most
     const MediaRanks& media;
     const PictureSettings& settings;
@@ -31,6 +33,7 @@ struct RenderContext {
     bool has_blended;
 
     bool sampled() const { return is_sampled(settings); }
+    bool samples_emitters() const { return peelray::samples_emitters(settings) && !emitters.empty(); }
     bool samples_environment() const { return settings.env_mode == EnvironmentMode::sampled; }
 };
 
@@ -59,12 +62,13 @@ class Shader {
         Media media;                   ///< what the ray is in at its start
         Cone cone;
         bool sees_sun = true;
-        /// Of the ray's direction among those that its hit could have drawn, where that hit has drawn directions to the
-        /// environment too: both share its light. 0: all of it comes along the ray; < 0: none.
+        /// Of the ray's direction among those that its hit could have drawn, where that hit has drawn directions to
+        /// lights too: both share the light. 0: all of it comes along the ray; < 0: none.
         double density = 0;
         uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
         uint32_t level = 0;
-        uint32_t passed = 0;  ///< blended surfaces so far: those levels are no bounces
+        uint32_t scattered = 0;  ///< diffuse bounces so far
+        uint32_t passed = 0;     ///< blended surfaces so far: those levels are no bounces
         Channel channel = Channel::all;
     };
 
@@ -132,6 +136,7 @@ class Shader {
 
     MediaWalk walk() const { return {context_.bvh, context_.surfaces, context_.media}; }
     Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
+    double traced_part(double roughness, double metallic) const;
     static optics::Lobe lobe_of(const Surface& surface);
     static optics::Lobe coat_lobe(const Surface& surface);
     static double coat_reflectance(const Optics& m, double v_h);
@@ -171,11 +176,18 @@ class Shader {
                         const glm::dvec3& to_light) const;
     glm::dvec3 reflectance(const Surface& surface, const Path& path, const Seen& seen,
                            const glm::dvec3& to_light) const;
-    glm::dvec3 direct_light(const Surface& surface, uint32_t triangle, const Path& path, const Meeting& meeting);
+    glm::dvec3 scattered_light(const Surface& surface, const Path& path, const Meeting& meeting);
+    glm::dvec3 direct_light(const Lit& at, bool sky);
     double radius_of(const Light& light) const { return context_.sampled() ? double(light.radius) : 0; }
     Incidence incidence(const Light& light, uint32_t index, const Lit& at) const;
     double reach(const Light& light, const glm::dvec3& start, const glm::dvec3& direction) const;
-    glm::dvec3 arriving(const Lit& at, const glm::dvec3& direction, const Light* lamp);
+    /// Of a surface that light comes to from a direction.
+    struct Start {
+        glm::dvec3 point;
+        bool from_behind;
+    };
+    static Start start_to(const Lit& at, const glm::dvec3& direction);
+    glm::dvec3 arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance);
     /// What Lambert's law scatters of light from the side that is seen and from behind, per unit of irradiance.
     struct BothSides {
         glm::dvec3 front, back;
@@ -186,7 +198,14 @@ class Shader {
     double environment_blur(const Cone& cone, double density) const;
     static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
     glm::dvec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn) const;
+    static bool scatters(const Optics& m);
+    static glm::dvec3 draw_scattered(const Lit& at, glm::dvec2 random);
+    static double scattered_density(const Lit& at, const glm::dvec3& direction);
     glm::dvec3 environment_light(const Lit& at);
+    Branch diffuse_branch(const Lit& at) const;
+    double emitter_density(uint32_t triangle, double probability, const glm::dvec3& direction, double distance) const;
+    double emission_share(const Path& path, const OracleHit& hit) const;
+    glm::dvec3 emitter_light(const Lit& at);
     glm::dvec3 visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance, uint32_t triangle,
                           Media media) const;
     double index_of(uint32_t medium, Channel channel) const;

@@ -1,6 +1,7 @@
 // The scene as shading sees it, in double precision: materials, the surface at a hit. Private to src/reference.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -102,6 +103,11 @@ class Surfaces {
     Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction, double width = 0) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
+    /// Of a triangle.
+    std::array<glm::dvec3, 3> corners(uint32_t triangle) const {
+        const glm::uvec3 at = geometry_.triangles[triangle];
+        return {geometry_.positions[at.x], geometry_.positions[at.y], geometry_.positions[at.z]};
+    }
     /// A material's constants, without its textures.
     const Optics& optics(uint32_t material) const { return optics_[material]; }
     bool lets_through(uint32_t material) const { return peelray::lets_through(scene_.materials[material]); }
