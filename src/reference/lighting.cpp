@@ -13,36 +13,9 @@ using namespace optics;
 
 namespace {
 
-/// A light as a point of a surface meets it.
-struct Incidence {
-    glm::dvec3 irradiance{0};  ///< on a surface that faces the light; 0: none
-    glm::dvec3 direction;      ///< to the light, unit
-};
-
-Incidence incidence(const Light& light, const glm::dvec3& position) {
-    if (light.kind == Light::Kind::directional) return {light.color, -glm::dvec3(light.direction)};
-    const glm::dvec3 to_light = glm::dvec3(light.position) - position;
-    const double distance = glm::length(to_light);
-    if (distance == 0) return {};
-    const glm::dvec3 direction = to_light / distance;
-    // KHR_lights_punctual: inverse square with a smooth end at the range, a squared ramp between the cones.
-    double strength = 1 / (distance * distance);
-    if (std::isfinite(light.range)) strength *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
-    if (light.kind == Light::Kind::spot) {
-        const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
-        const double cosine = glm::dot(glm::dvec3(light.direction), -direction);
-        const double ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
-        strength *= ramp * ramp;
-    }
-    return {glm::dvec3(light.color) * strength, direction};
-}
-
 /// The lobe of GGX, times the cosine; less Fresnel's share.
 double highlight(const Lobe& lobe, const glm::dvec3& view, const glm::dvec3& to_light) {
-    const double n_l = glm::dot(lobe.n, to_light);
-    if (n_l <= 0 || lobe.alpha.x < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return 0;
-    const double n_v = std::max(GRAZING_COSINE, glm::dot(lobe.n, view));
-    return lobe.distribution(glm::normalize(view + to_light)) * lobe.masking(view) * lobe.masking(to_light) / (4 * n_v);
+    return lobe.density(view, to_light) * lobe.masking(to_light);
 }
 
 }  // namespace
@@ -73,7 +46,7 @@ glm::dvec3 Shader::specular(const Surface& s, const Path& path, const Parts& fre
     const Lobe lobe = lobe_of(s);
     const glm::dvec3 half = glm::normalize(to_light - path.direction);
     const double shape = highlight(lobe, -path.direction, to_light);
-    const bool sampled = context_.settings.spp > 1;
+    const bool sampled = context_.sampled();
     const Parts gained = fresnel * compensation(s, n_v);
     if (!m.transmits() || !compensates(m) || !sampled) return gained.of(m) * shape;
     const double kept = lobe.masking(to_light);
@@ -106,59 +79,102 @@ glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& s
         }
     }
     if (m.clearcoat == 0) return share;
-    const double coat = m.clearcoat * fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, v_h).x;
-    const Lobe lobe(s.coat_normal, m.coat_roughness * m.coat_roughness);
-    return share * (1 - seen.coat) + coat * highlight(lobe, view, to_light);
+    return share * (1 - seen.coat) + coat_reflectance(m, v_h) * highlight(coat_lobe(s), view, to_light);
 }
 
-glm::dvec3 Shader::direct_light(const Surface& s, uint32_t triangle, const Path& path, const Meeting& meeting) {
-    const Optics& m = s.optics;
-    if (m.unlit) return glm::dvec3(0);
-    const Seen seen = this->seen(s, path);
-    const Media& behind = meeting.wall && m.transmits() && !m.thin ? meeting.behind : path.media;
+/// `sky`: that of the environment where no direction to it is drawn, which else a diffuse ray brings.
+glm::dvec3 Shader::direct_light(const Lit& at, bool sky) {
     glm::dvec3 sum(0);
-    for (const Light& light : context_.lights) {
-        const auto [irradiance, direction] = incidence(light, s.position);
+    for (uint32_t i = 0; i < context_.lights.size(); i++) {
+        const Light& light = context_.lights[i];
+        const auto [irradiance, direction] = incidence(light, i, at);
         if (irradiance == glm::dvec3(0)) continue;
-        const glm::dvec3 reflected = irradiance * reflectance(s, path, seen, direction);
+        const glm::dvec3 reflected = irradiance * reflectance(at.surface, at.path, at.seen, direction);
         if (reflected == glm::dvec3(0)) continue;
-        if (!context_.settings.shadow) {
-            sum += reflected;
-            continue;
-        }
-        const bool from_behind = m.behind > 0 && glm::dot(s.normal, direction) < 0;
-        // A triangle that turns away from the light is itself in the way where it is no part of a bulge.
-        if (!from_behind && context_.surfaces.blocks_itself(s, triangle, direction)) continue;
-        rays_.shadow++;
-        const glm::dvec3 start = from_behind ? s.start(s.position, direction) : s.lit_start();
-        const bool far = light.kind == Light::Kind::directional;
-        const double reach = far ? infinity : glm::dot(glm::dvec3(light.position) - start, direction);
-        sum += reflected * visibility(start, direction, reach, triangle, from_behind ? behind : path.media);
+        const Start start = start_to(at, direction);
+        sum += reflected * arriving(at, start, direction, reach(light, start.point, direction));
     }
-    return sum + sky_light(s, triangle, path, seen, behind);
+    if (context_.samples_emitters()) sum += emitter_light(at);
+    if (context_.samples_environment()) return sum + environment_light(at);
+    return sky ? sum + sky_light(at) : sum;
+}
+
+/// Of a lamp with a size, from one of the directions in which it is seen; `index`: of the lamp.
+Shader::Incidence Shader::incidence(const Light& light, uint32_t index, const Lit& at) const {
+    const double radius = radius_of(light);
+    Incidence in{light.color, -glm::dvec3(light.direction)};
+    double sine = std::sin(radius);  // of half the angle in which the lamp is seen
+    if (light.kind != Light::Kind::directional) {
+        const glm::dvec3 to_light = glm::dvec3(light.position) - at.surface.position;
+        const double distance = glm::length(to_light);
+        if (distance == 0) return {};
+        in.direction = to_light / distance;
+        sine = std::min(1.0, radius / distance);
+        // KHR_lights_punctual: inverse square with a smooth end at the range, a squared ramp between the cones.
+        double strength = 1 / (distance * distance);
+        if (std::isfinite(light.range)) strength *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
+        if (light.kind == Light::Kind::spot) {
+            const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
+            const double cosine = glm::dot(glm::dvec3(light.direction), -in.direction);
+            const double ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
+            strength *= ramp * ramp;
+        }
+        in.irradiance *= strength;
+    }
+    if (sine == 0 || in.irradiance == glm::dvec3(0)) return in;
+    const glm::dvec2 u = random(at.path, RANDOM_LAMP + index);
+    const double least = std::sqrt(1 - sine * sine), cosine = 1 - u.x * (1 - least), phi = 2 * pi * u.y;
+    const double across = std::sqrt(1 - cosine * cosine);
+    const auto [t, b] = tangents(in.direction);
+    in.direction = t * (across * std::cos(phi)) + b * (across * std::sin(phi)) + in.direction * cosine;
+    in.irradiance *= 2 / (1 + least);  // a ball's light from all over its disc, as from its cone
+    return in;
+}
+
+/// How far a ray along a direction that incidence() has found goes up to the lamp: to the near side of its ball.
+double Shader::reach(const Light& light, const glm::dvec3& start, const glm::dvec3& direction) const {
+    if (light.kind == Light::Kind::directional) return infinity;
+    const glm::dvec3 to_light = glm::dvec3(light.position) - start;
+    const double radius = radius_of(light), along = glm::dot(to_light, direction);
+    const double inside2 = radius * radius - glm::dot(to_light, to_light) + along * along;
+    return radius > 0 ? along - std::sqrt(std::max(0.0, inside2)) : along;
+}
+
+Shader::Start Shader::start_to(const Lit& at, const glm::dvec3& direction) {
+    const Surface& s = at.surface;
+    const bool from_behind = s.optics.behind > 0 && glm::dot(s.normal, direction) < 0;
+    return {from_behind ? s.start(s.position, direction) : s.lit_start(), from_behind};
+}
+
+/// Share of the light that arrives from as far away.
+glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance) {
+    if (!context_.settings.shadow) return glm::dvec3(1);
+    // A triangle that turns away from the light is itself in the way where it is no part of a bulge.
+    if (!start.from_behind && context_.surfaces.blocks_itself(at.surface, at.triangle, direction)) return glm::dvec3(0);
+    rays_.shadow++;
+    return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
 }
 
 /// What the surface mirrors is not available for diffuse light.
-glm::dvec3 Shader::sky_light(const Surface& s, uint32_t triangle, const Path& path, const Seen& seen,
-                             const Media& behind) {
+glm::dvec3 Shader::sky_light(const Lit& at) {
+    const Surface& s = at.surface;
     const Optics& m = s.optics;
-    const glm::dvec3 below = glm::dvec3((1 - m.metallic) * (1 - m.transmission) / pi * seen.scattered * seen.sheen);
-    glm::dvec3 front = below * (1 - m.behind) * m.base_color, back = below * m.behind * m.behind_color;
-    if (largest(m.sheen) > 0) front += m.sheen * context_.albedos.sheen(s, seen.n_v) / pi;
+    auto [front, back] = scattered(at);
+    if (largest(m.sheen) > 0) front += m.sheen * (1 - at.seen.coat) * context_.albedos.sheen(s, at.seen.n_v) / pi;
     const double open = context_.settings.ambient ? 1 : m.occlusion;  // or rays find out
-    front *= open * (1 - seen.coat) * context_.surroundings.irradiance(s.normal);
-    back *= open * (1 - seen.coat) * context_.surroundings.irradiance(-s.normal);
+    front *= open * context_.surroundings.irradiance(s.normal);
+    back *= open * context_.surroundings.irradiance(-s.normal);
     if (!context_.settings.ambient) return front + back;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
-    const glm::dvec3 sampled = cosine_direction(s.normal, random_pair(path.seed, sample_, Purpose::sky));
+    const glm::dvec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
     const glm::dvec3 direction = above_surface(sampled, s.geometric);
     if (largest(front) > 0) {
         rays_.ambient++;
-        front *= visibility(s.start(s.shadow_start, direction), direction, infinity, triangle, path.media);
+        front *= visibility(s.start(s.shadow_start, direction), direction, infinity, at.triangle, at.path.media);
     }
     if (largest(back) > 0) {
         rays_.ambient++;
-        back *= visibility(s.start(s.position, -direction), -direction, infinity, triangle, behind);
+        back *= visibility(s.start(s.position, -direction), -direction, infinity, at.triangle, at.behind);
     }
     return front + back;
 }

@@ -92,30 +92,16 @@ double Lobe::masking(const glm::dvec3& direction) const {
     return d.z > 0 ? 2 * d.z / (d.z + glm::length(stretched)) : 0;
 }
 
+double Lobe::density(const glm::dvec3& view, const glm::dvec3& reflected) const {
+    if (glm::dot(n, reflected) <= 0 || alpha.x < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return 0;
+    const double n_v = std::max(GRAZING_COSINE, glm::dot(n, view));
+    return distribution(glm::normalize(view + reflected)) * masking(view) / (4 * n_v);
+}
+
 glm::dvec3 Lobe::sample(const glm::dvec3& view, const glm::dvec2& random) const {
     const glm::dvec3 v = local(view), above(v.x, v.y, std::max(GRAZING_COSINE, v.z));
     const glm::dvec3 h = sample_ggx(glm::normalize(above), alpha, random);
     return glm::normalize(t * h.x + b * h.y + n * h.z);
-}
-
-glm::uvec3 hash3(glm::uvec3 v) {
-    const auto mix = [&] {
-        v.x += v.y * v.z;
-        v.y += v.z * v.x;
-        v.z += v.x * v.y;
-    };
-    v = v * 1664525u + 1013904223u;
-    mix();
-    v ^= v >> 16u;
-    mix();
-    return v;
-}
-
-glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose) {
-    const glm::uvec3 h = hash3({seed, uint32_t(purpose), 0x9e3779b9u});
-    // R2: 2^32 over the plastic number and its square.
-    const uint32_t x = h.x + 3242174889u * index, y = h.y + 2447445414u * index;
-    return glm::dvec2(x >> 8, y >> 8) / 16777216.0;
 }
 
 }  // namespace peelray::optics

@@ -56,17 +56,13 @@ struct Lobe {
     double distribution(const glm::dvec3& half) const;
     /// Smith's masking of a direction; 0 below the surface.
     double masking(const glm::dvec3& direction) const;
+    /// Of the directions that visible normals reflect `view` to. 0 for mirrors and below the surface.
+    double density(const glm::dvec3& view, const glm::dvec3& reflected) const;
     /// A visible normal.
     glm::dvec3 sample(const glm::dvec3& view, const glm::dvec2& random) const;
 
   private:
     glm::dvec3 local(const glm::dvec3& d) const { return {glm::dot(d, t), glm::dot(d, b), glm::dot(d, n)}; }
 };
-
-/// pcg3d (Jarzynski, Olano, JCGT 2020): bit for bit the GPU's.
-glm::uvec3 hash3(glm::uvec3 v);
-enum class Purpose : uint32_t { microfacet = RANDOM_MICROFACET, sky = RANDOM_SKY, coat = RANDOM_COAT };
-/// Sample `index` at a place of the tree of rays, [0, 1)²: bit for bit the GPU's.
-glm::dvec2 random_pair(uint32_t seed, uint32_t index, Purpose purpose);
 
 }  // namespace peelray::optics

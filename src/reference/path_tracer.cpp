@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -38,6 +39,7 @@ void check_settings(const PictureSettings& s) {
         fail("a picture of {}x{} pixels is impossible: choose 1x1 to 65536x65536 ({})", s.width, s.height,
              setting::size);
     check_limits(kBounceLimits, setting::bounces, s.bounces);
+    check_limits(kBounceLimits, setting::gi, s.gi);
     check_limits(kSampleLimits, setting::spp, s.spp);
 }
 
@@ -51,7 +53,7 @@ Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x,
     // A pixel's share of the picture, or a sample's of the pixel.
     const double across = 2 * glm::length(glm::dvec3(view.up)) / s.height / std::sqrt(double(s.spp));
     path.cone = view.orthographic ? Cone{across, 0} : Cone{0, across};
-    path.seed = optics::hash3({x, y, 0}).x;
+    path.seed = path_seed(x, y);
     return path;
 }
 
@@ -113,13 +115,16 @@ struct PathTracer::Impl {
     Surfaces surfaces;
     Albedos albedos;
     Surroundings surroundings;
-    std::vector<Light> lights;
+    std::vector<Light> lights;  ///< the moment's, then the environment's
     MediaRanks media;
     bool has_blended;
     const Scene& scene;
+    const Environment& environment;
+    EmitterList emitters;
     Moment placed;  ///< only what MediaPieces reads
 
-    Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment)
+    Impl(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment,
+         std::span<const Emitter> emitters)
         : geometry(geometry),
           bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)),
           surfaces(scene, geometry),
@@ -129,7 +134,9 @@ struct PathTracer::Impl {
           media(media_ranks(scene)),
           has_blended(std::ranges::any_of(geometry.materials,
                                           [&](uint32_t material) { return scene.materials[material].blended; })),
-          scene(scene) {
+          scene(scene),
+          environment(environment),
+          emitters(emitters, geometry.triangles.size()) {
         placed.worlds = moment.worlds;
         lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
@@ -140,6 +147,16 @@ struct PathTracer::Impl {
         if (camera.orthographic_height > 0) return start;
         for (const uint32_t material : MediaPieces(scene).around(scene, placed, camera.eye)) start.enter(material);
         return start;
+    }
+    /// Where directions to an image's light are drawn, no light needs to stand for its brightest spot.
+    bool draws_image(const PictureSettings& s) const {
+        return s.env_mode == EnvironmentMode::sampled && environment.is_image;
+    }
+    std::span<const Light> lights_for(const PictureSettings& s) const {
+        return std::span(lights).first(lights.size() - (draws_image(s) ? environment.lights.size() : 0));
+    }
+    double rough_limit_for(const PictureSettings& s) const {
+        return draws_image(s) ? infinity : double(environment.rough_limit);
     }
     Views views(const PictureSettings& s, const Box& box) const;
     /// Numbers as Geometry::objects does.
@@ -191,10 +208,11 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     const size_t at = size_t(y) * s.width + x;
     glm::dvec4 sum(0);
     glm::dvec3 unlit(0);  // of it, what a display shows as it is
+    const uint32_t sample_bits = PixelSample::bits_for(s.spp);
     for (uint32_t sample = 0; sample < s.spp; sample++) {
         Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
-        Shader shader(context, sample);
+        Shader shader(context, {sample, sample_bits, s.seed});
         const Meeting meeting = shader.hit(path);
         const OracleHit& hit = meeting.hit;
         const glm::dvec3 radiance = shader.radiance(path, meeting);
@@ -233,8 +251,8 @@ RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context,
 }
 
 PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry,
-                       const Environment& environment)
-    : impl_(std::make_unique<Impl>(scene, moment, geometry, environment)) {}
+                       const Environment& environment, std::span<const Emitter> emitters)
+    : impl_(std::make_unique<Impl>(scene, moment, geometry, environment, emitters)) {}
 
 PathTracer::~PathTracer() = default;
 
@@ -245,13 +263,16 @@ std::string PathTracer::version() {
 Picture PathTracer::render(const PictureSettings& settings, const std::function<void(double)>& progress,
                            unsigned threads) const {
     check_settings(settings);
+    assert(settings.env_mode != EnvironmentMode::sampled || !impl_->environment.distribution.quads.empty());
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
     const Views views = impl_->views(settings, box);
     const RenderContext context{impl_->bvh,
                                 impl_->surfaces,
                                 impl_->albedos,
                                 impl_->surroundings,
-                                impl_->lights,
+                                impl_->lights_for(settings),
+                                impl_->emitters,
+                                impl_->rough_limit_for(settings),
                                 impl_->media,
                                 settings,
                                 box,

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
+#include "scene/emitters.h"
 #include "scene/environment.h"
 #include "scene/moment.h"
 #include "scene/picture.h"
@@ -16,13 +18,15 @@ namespace peelray {
 /// all shading is in double precision. So a picture differs from the GPU's where intersections do, and by rounding.
 class PathTracer {
   public:
-    /// `scene`, `geometry` and `environment` must outlive it. Throws Error if Embree runs out of memory.
-    PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment);
+    /// `scene`, `geometry` and `environment` must outlive it. `emitters`: that are looked for as lamps are, by
+    /// Emitter::id. Throws Error if Embree runs out of memory.
+    PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment,
+               std::span<const Emitter> emitters = {});
     ~PathTracer();
 
     /// `threads`: 0 for all cores. The picture does not depend on it. `progress` receives the share done, [0, 1], from
-    /// the calling thread only; if it throws, all threads stop and the exception goes on. Throws Error for impossible
-    /// settings, naming the option.
+    /// the calling thread only; if it throws, all threads stop and the exception goes on. EnvironmentMode::sampled
+    /// needs Environment::distribution. Throws Error for impossible settings, naming the option.
     Picture render(const PictureSettings& settings, const std::function<void(double)>& progress = {},
                    unsigned threads = 0) const;
 

@@ -7,6 +7,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "reference/optics.h"
+#include "reference/random_numbers.h"
 #include "reference/surface.h"
 
 namespace peelray {
@@ -50,7 +51,7 @@ class PixelRays {
         if (wants(RayKind::mirror))
             out[mirror_part].push_back(leave(s, hit.triangle, s.position, reflected(s, direction)));
         if (wants(RayKind::shadow)) add_shadow(s, hit.triangle, out);
-        const uint32_t seed = optics::hash3({x, y, 0}).x;
+        const uint32_t seed = path_seed(x, y);
         for (uint32_t i = 0; wants(RayKind::ambient) && i < ambient_samples; i++)
             out[ambient_part + i].push_back(leave(s, hit.triangle, s.shadow_start, cosine_direction(s, seed, i)));
         if (wants(RayKind::diffuse))
@@ -87,7 +88,8 @@ class PixelRays {
     }
 
     static glm::dvec3 cosine_direction(const Surface& s, uint32_t seed, uint32_t sample) {
-        const glm::dvec2 random = optics::random_pair(seed, sample, optics::Purpose::sky);
+        const PixelSample drawn{sample, PixelSample::bits_for(ambient_samples + 1)};
+        const glm::dvec2 random = random_pair(seed, 0, RANDOM_SKY, drawn);
         return optics::above_surface(optics::cosine_direction(s.normal, random), s.geometric);
     }
 

@@ -11,29 +11,47 @@ using namespace optics;
 
 namespace {
 
-/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
-double traced_part(double roughness, double metallic, uint32_t spp) {
-    if (spp > 1) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
-    const double x =
-        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
-    return 1 - x * x * (3 - 2 * x);
-}
-
 glm::dvec3 mirrored(const glm::dvec3& direction, const glm::dvec3& normal) {
     return direction - 2 * glm::dot(direction, normal) * normal;
 }
 
 }  // namespace
 
+/// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
+/// unless the environment's light is drawn too.
+double Shader::traced_part(double roughness, double metallic) const {
+    if (context_.samples_environment()) return 1;
+    if (context_.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
+    const double x =
+        std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
+    return 1 - x * x * (3 - 2 * x);
+}
+
 Lobe Shader::lobe_of(const Surface& s) {
     const glm::dvec2 alphas = s.optics.alphas();
     return s.optics.anisotropy > 0 ? Lobe(s.normal, s.along, alphas) : Lobe(s.normal, alphas.x);
 }
 
-/// The half vector: the normal itself for mirrors and with one sample per pixel, else a sample of the visible normals.
-glm::dvec3 Shader::half_vector(const Lobe& lobe, const glm::dvec3& view, uint32_t seed, Purpose purpose) const {
-    if (context_.settings.spp <= 1 || lobe.alpha.x < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return lobe.n;
-    return lobe.sample(view, random_pair(seed, sample_, purpose));
+Lobe Shader::coat_lobe(const Surface& s) {
+    return Lobe(s.coat_normal, s.optics.coat_roughness * s.optics.coat_roughness);
+}
+
+/// What a microfacet of the coat mirrors.
+double Shader::coat_reflectance(const Optics& m, double v_h) {
+    return m.clearcoat * fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, v_h).x;
+}
+
+/// The half vector: the normal itself for mirrors and where one stands for all, else a sample of the visible normals.
+glm::dvec3 Shader::half_vector(const Lobe& lobe, const Path& path, uint32_t purpose) const {
+    if (!context_.sampled() || lobe.alpha.x < MIRROR_ROUGHNESS * MIRROR_ROUGHNESS) return lobe.n;
+    return lobe.sample(-path.direction, random(path, purpose));
+}
+
+/// Path::density of what a lobe reflects. Where a coat shares a branch with what is below, it has none.
+double Shader::reflection_density(const Surface& s, const Lobe& lobe, const Path& path,
+                                  const glm::dvec3& reflected) const {
+    if (!context_.sampled() || s.optics.shares_branch()) return 0;
+    return lobe.density(-path.direction, reflected);
 }
 
 /// That of the surface below the coat. One sample looks where a stretched lobe's light comes from on the whole: the
@@ -41,7 +59,7 @@ glm::dvec3 Shader::half_vector(const Lobe& lobe, const glm::dvec3& view, uint32_
 glm::dvec3 Shader::microfacet(const Surface& s, const Lobe& lobe, const Path& path) const {
     const Optics& m = s.optics;
     const glm::dvec3 view = -path.direction;
-    if (m.anisotropy == 0 || context_.settings.spp > 1) return half_vector(lobe, view, path.seed, Purpose::microfacet);
+    if (m.anisotropy == 0 || context_.sampled()) return half_vector(lobe, path, RANDOM_MICROFACET);
     const glm::dvec3 across = view - glm::dot(view, lobe.b) * lobe.b;
     const glm::dvec3 turned = glm::dot(across, across) > 0 ? glm::normalize(across) : s.normal;
     return glm::normalize(glm::mix(turned, s.normal, std::pow(1 - m.anisotropy * (1 - m.roughness), 4)));
@@ -53,7 +71,7 @@ std::optional<glm::dvec3> Shader::refracted(const Surface& s, const Path& path, 
                                             const glm::dvec3& half) const {
     const bool rough = s.optics.lobe_roughness() >= MIRROR_ROUGHNESS;
     if (!s.optics.thin) return refract_ray(path.direction, half, relative_index(meeting, s, path.channel));
-    if (!rough || context_.settings.spp <= 1) return path.direction;
+    if (!rough || !context_.sampled()) return path.direction;
     return mirrored(mirrored(path.direction, half), s.normal);
 }
 
@@ -66,7 +84,7 @@ Shader::Shares Shader::shares(const Surface& s, const Lobe& lobe, const Path& pa
     const Parts fresnel = reflectance_at(meeting, s, v_h, path.channel);
     const glm::dvec3 passed = 1.0 - fresnel.dielectric;
     if (m.lobe_roughness() < MIRROR_ROUGHNESS) return {fresnel.of(m), passed};
-    const bool sampled = context_.settings.spp > 1;
+    const bool sampled = context_.sampled();
     if (!m.transmits() && !sampled) return {mean_reflectance(s, n_v).of(m), passed};
     const double kept = sampled ? lobe.masking(mirrored(path.direction, half)) : context_.albedos.at(s, n_v).masking();
     if (!m.transmits()) return {(fresnel * compensation(s, n_v)).of(m) * kept, passed};
@@ -103,7 +121,7 @@ void Shader::split(const Path& path, const Meeting& meeting, const Surface& s, c
 /// All branches of a surface, and what it sends by itself.
 Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meeting& meeting) const {
     const Optics& m = s.optics;
-    const PictureSettings& settings = context_.settings;
+    const bool sampled = context_.sampled();
     Scattered out;
     if (m.unlit) {
         out.radiance = m.base_color;
@@ -123,10 +141,11 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     reflection.media = meeting.before;
     reflection.cone = path.cone.reflected(s.curvature);
     reflection.sees_sun = mirror && path.sees_sun;
+    reflection.density = reflection_density(s, lobe, path, reflection.direction);
     reflection.traced = is_traced(reflection, path);
-    reflection.blur = settings.spp > 1 ? 0 : roughness;
+    reflection.blur = sampled ? 0 : roughness;
 
-    out.radiance = m.emissive;
+    out.radiance = m.emissive * emission_share(path, meeting.hit);
     if (!transmits) out.radiance += fade(reflection, roughness, m.metallic);
     const auto direction = transmits ? refracted(s, path, meeting, h) : std::nullopt;
     const bool comes_apart = disperses(s, path, meeting);
@@ -134,12 +153,12 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         Branch& refraction = out.refraction;
         refraction.weight = share.refracted * m.tint() * below;
         refraction.direction = direction.value_or(path.direction);
-        if (m.thin && !mirror && settings.spp > 1)
-            refraction.direction = above_surface(refraction.direction, -s.geometric);
+        if (m.thin && !mirror && sampled) refraction.direction = above_surface(refraction.direction, -s.geometric);
         refraction.media = meeting.behind;
         refraction.cone =
             m.thin ? path.cone : path.cone.refracted(s.curvature, relative_index(meeting, s, path.channel));
         refraction.sees_sun = mirror && path.sees_sun;
+        refraction.density = path.density;  // light rays go straight through
         refraction.mirrors = false;
         refraction.traced = is_traced(refraction, path);
         refraction.weight *= meeting.beside;
@@ -152,7 +171,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
 
 /// What the untraced part of a wide lobe sees, at once; the branch keeps the rest.
 glm::dvec3 Shader::fade(Branch& branch, double roughness, double metallic) const {
-    const double part = traced_part(roughness, metallic, context_.settings.spp);
+    const double part = traced_part(roughness, metallic);
     if (part == 1) return glm::dvec3(0);
     const glm::dvec3 seen = branch.weight * (1 - part) * context_.surroundings.radiance(branch.direction, roughness);
     branch.weight *= part;
@@ -169,29 +188,29 @@ void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting
     out.radiance *= 1 - share;
     out.reflection.weight *= 1 - share;
     out.refraction.weight *= 1 - share;
-    const bool has_second = m.transmits() || m.alpha < 1;
+    const bool has_second = m.shares_branch();
     if (has_second && largest(out.reflection.weight) > 0) {
         out.reflection.weight += share;
         out.reflection.traced = is_traced(out.reflection, path);
         return;
     }
-    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS, sampled = !mirror && context_.settings.spp > 1;
-    const Lobe lobe(s.coat_normal, m.coat_roughness * m.coat_roughness);
-    const glm::dvec3 h = half_vector(lobe, view, path.seed, Purpose::coat);
+    const bool mirror = m.coat_roughness < MIRROR_ROUGHNESS, sampled = !mirror && context_.sampled();
+    const Lobe lobe = coat_lobe(s);
+    const glm::dvec3 h = half_vector(lobe, path, RANDOM_COAT);
     const glm::dvec3 reflected = mirrored(path.direction, h);
     Branch coat;
     coat.weight = glm::dvec3(share);
-    if (sampled) {
-        coat.weight = m.clearcoat * lobe.masking(reflected) *
-                      fresnel_schlick(glm::dvec3(COAT_REFLECTANCE), 1, std::clamp(glm::dot(view, h), 0.0, 1.0));
-    }
+    if (sampled)
+        coat.weight =
+            glm::dvec3(coat_reflectance(m, std::clamp(glm::dot(view, h), 0.0, 1.0)) * lobe.masking(reflected));
     coat.direction = above_surface(reflected, s.geometric);
     coat.media = meeting.before;
     coat.cone = path.cone.reflected(s.curvature);
     coat.sees_sun = mirror && path.sees_sun;
+    coat.density = reflection_density(s, lobe, path, coat.direction);
     coat.traced = is_traced(coat, path);
     out.radiance += fade(coat, m.coat_roughness, 0);
-    coat.blur = context_.settings.spp > 1 ? 0 : m.coat_roughness;
+    coat.blur = context_.sampled() ? 0 : m.coat_roughness;
     (has_second ? out.reflection : out.refraction) = coat;
 }
 
@@ -208,6 +227,7 @@ void Shader::pass_beside(const Surface& s, const Path& path, const Meeting& meet
     on.cone = path.cone;
     on.passes = true;
     on.sees_sun = path.sees_sun;
+    on.density = path.density;
     on.mirrors = false;
     on.traced = is_traced(on, path);
     out.refraction = on;

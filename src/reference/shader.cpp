@@ -20,7 +20,10 @@ glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
 
 glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
-    if (!hit.hit()) return meeting.passed * context_.surroundings.seen(arriving.direction, arriving.sees_sun);
+    if (!hit.hit())
+        return meeting.passed * environment_share(arriving.direction, arriving.density) *
+               context_.surroundings.seen(arriving.direction, environment_blur(arriving.cone, arriving.density),
+                                          arriving.sees_sun, context_.rough_limit);
     const double width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
@@ -33,8 +36,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     glm::dvec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
-        unlit_ =
-            kept * (sum + (on.traced ? glm::dvec3(0) : on.weight * context_.surroundings.radiance(on.direction, 0)));
+        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on)));
     }
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
@@ -49,15 +51,35 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     };
     if (scattered.split.empty()) second(whole);
     for (const Branch& channel : scattered.split) second(channel);
-    sum += surface.optics.alpha * direct_light(surface, hit.triangle, path, meeting);
+    if (!surface.optics.unlit) sum += scattered_light(surface, path, meeting);
     return kept * sum;
 }
 
-/// The light of one of a hit's branches; `which`: of the two, a channel being part of the second.
+/// Light from lamps and from what else is not mirrored.
+glm::dvec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& meeting) {
+    const Seen seen = this->seen(s, path);
+    const bool volume = meeting.wall && s.optics.transmits() && !s.optics.thin;
+    const Lit at{s, meeting.hit.triangle, path, seen, volume ? meeting.behind : path.media};
+    const Branch diffuse = diffuse_branch(at);
+    const glm::dvec3 direct = s.optics.alpha * direct_light(at, !diffuse.traced);
+    if (!diffuse.traced) return direct;
+    rays_.diffuse++;
+    return direct + follow(diffuse, s, path, at.triangle, 2);
+}
+
+/// A branch that no ray follows sees the environment.
+glm::dvec3 Shader::untraced(const Branch& branch) const {
+    const double blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
+    return branch.weight * environment_share(branch.direction, branch.density) *
+           context_.surroundings.radiance(branch.direction, blur);
+}
+
+/// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
+/// part of, 2 the diffuse one.
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
-    if (!branch.traced) return branch.weight * context_.surroundings.radiance(branch.direction, branch.blur);
+    if (!branch.traced) return untraced(branch);
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;
@@ -66,17 +88,21 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.media = branch.media;
     next.cone = branch.cone;
     next.sees_sun = branch.sees_sun;
-    next.seed = hash3({path.seed, which, path.level}).x;
+    next.density = branch.density;
+    next.seed = branch_seed(path.seed, which, path.level);
     next.level = path.level + 1;
+    next.scattered = path.scattered + (which == 2);
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
     return branch.weight * radiance(next, hit(next));
 }
 
-/// Has the path come as far as it is followed?
+/// Has the path come as far as it is followed? Diffuse bounces are counted apart.
 bool Shader::is_last(const Branch& branch, const Path& path) const {
-    const uint32_t last = last_level(context_.settings, context_.has_blended);
-    return path.level >= (branch.passes ? last : std::min(last, context_.settings.bounces + path.passed));
+    const PictureSettings& settings = context_.settings;
+    if (path.level >= last_level(settings, context_.has_blended)) return true;
+    const uint32_t most = bounce_levels(settings, context_.has_blended);
+    return path.level - path.scattered >= (branch.passes ? most : std::min(most, settings.bounces + path.passed));
 }
 
 /// Is it bright enough, and its effect on?

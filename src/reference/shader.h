@@ -2,13 +2,17 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "reference/albedos.h"
 #include "reference/bvh.h"
+#include "reference/emitter_list.h"
 #include "reference/media.h"
 #include "reference/optics.h"
+#include "reference/random_numbers.h"
 #include "reference/surface.h"
+#include "reference/surroundings.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -19,12 +23,18 @@ struct RenderContext {
     const Surfaces& surfaces;
     const Albedos& albedos;
     const Surroundings& surroundings;
-    const std::vector<Light>& lights;
+    std::span<const Light> lights;
+    const EmitterList& emitters;
+    double rough_limit;  ///< radiance that rays after a rough surface see of the environment at most
     const MediaRanks& media;
     const PictureSettings& settings;
     Box box;      ///< of the scene
     Media start;  ///< what the camera is in
     bool has_blended;
+
+    bool sampled() const { return is_sampled(settings); }
+    bool samples_emitters() const { return peelray::samples_emitters(settings) && !emitters.empty(); }
+    bool samples_environment() const { return settings.env_mode == EnvironmentMode::sampled; }
 };
 
 /// How wide the light is that a ray stands for (Akenine-Möller et al., JCGT 2021).
@@ -52,13 +62,17 @@ class Shader {
         Media media;                   ///< what the ray is in at its start
         Cone cone;
         bool sees_sun = true;
+        /// Of the ray's direction among those that its hit could have drawn, where that hit has drawn directions to
+        /// lights too: both share the light. 0: all of it comes along the ray; < 0: none.
+        double density = 0;
         uint32_t seed = 0;  ///< of the random numbers: from the pixel and the branches taken
         uint32_t level = 0;
-        uint32_t passed = 0;  ///< blended surfaces so far: those levels are no bounces
+        uint32_t scattered = 0;  ///< diffuse bounces so far
+        uint32_t passed = 0;     ///< blended surfaces so far: those levels are no bounces
         Channel channel = Channel::all;
     };
 
-    Shader(const RenderContext& context, uint32_t sample) : context_(context), sample_(sample) {}
+    Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
 
     /// What the path's ray meets.
     Meeting hit(const Path& path) const;
@@ -78,6 +92,7 @@ class Shader {
         bool passes = false;  ///< straight on, through a blended surface
         bool mirrors = true;  ///< it is a reflection
         bool sees_sun = false;
+        double density = 0;  ///< Path::density
         bool traced = false;
         double blur = 0;  ///< roughness for the environment, if not traced
         Channel channel = Channel::all;
@@ -105,11 +120,32 @@ class Shader {
         double scattered = 1;  ///< what the dielectric part leaves for diffuse light
     };
 
+    /// A hit that light falls on.
+    struct Lit {
+        const Surface& surface;
+        uint32_t triangle;
+        const Path& path;
+        const Seen& seen;
+        const Media& behind;  ///< the media on the other side
+    };
+    /// A light as a point of a surface meets it.
+    struct Incidence {
+        glm::dvec3 irradiance{0};  ///< on a surface that faces the light; 0: none
+        glm::dvec3 direction;      ///< to the light, unit
+    };
+
     MediaWalk walk() const { return {context_.bvh, context_.surfaces, context_.media}; }
     Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
+    double traced_part(double roughness, double metallic) const;
     static optics::Lobe lobe_of(const Surface& surface);
-    glm::dvec3 half_vector(const optics::Lobe& lobe, const glm::dvec3& view, uint32_t seed,
-                           optics::Purpose purpose) const;
+    static optics::Lobe coat_lobe(const Surface& surface);
+    static double coat_reflectance(const Optics& m, double v_h);
+    glm::dvec2 random(const Path& path, uint32_t purpose) const {
+        return random_pair(path.seed, path.level, purpose, sample_);
+    }
+    glm::dvec3 half_vector(const optics::Lobe& lobe, const Path& path, uint32_t purpose) const;
+    double reflection_density(const Surface& surface, const optics::Lobe& lobe, const Path& path,
+                              const glm::dvec3& reflected) const;
     glm::dvec3 microfacet(const Surface& surface, const optics::Lobe& lobe, const Path& path) const;
     std::optional<glm::dvec3> refracted(const Surface& surface, const Path& path, const Meeting& meeting,
                                         const glm::dvec3& half) const;
@@ -125,6 +161,7 @@ class Shader {
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
+    glm::dvec3 untraced(const Branch& branch) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
 
@@ -139,9 +176,36 @@ class Shader {
                         const glm::dvec3& to_light) const;
     glm::dvec3 reflectance(const Surface& surface, const Path& path, const Seen& seen,
                            const glm::dvec3& to_light) const;
-    glm::dvec3 direct_light(const Surface& surface, uint32_t triangle, const Path& path, const Meeting& meeting);
-    glm::dvec3 sky_light(const Surface& surface, uint32_t triangle, const Path& path, const Seen& seen,
-                         const Media& behind);
+    glm::dvec3 scattered_light(const Surface& surface, const Path& path, const Meeting& meeting);
+    glm::dvec3 direct_light(const Lit& at, bool sky);
+    double radius_of(const Light& light) const { return context_.sampled() ? double(light.radius) : 0; }
+    Incidence incidence(const Light& light, uint32_t index, const Lit& at) const;
+    double reach(const Light& light, const glm::dvec3& start, const glm::dvec3& direction) const;
+    /// Of a surface that light comes to from a direction.
+    struct Start {
+        glm::dvec3 point;
+        bool from_behind;
+    };
+    static Start start_to(const Lit& at, const glm::dvec3& direction);
+    glm::dvec3 arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance);
+    /// What Lambert's law scatters of light from the side that is seen and from behind, per unit of irradiance.
+    struct BothSides {
+        glm::dvec3 front, back;
+    };
+    static BothSides scattered(const Lit& at);
+    glm::dvec3 sky_light(const Lit& at);
+    double environment_share(const glm::dvec3& direction, double density) const;
+    double environment_blur(const Cone& cone, double density) const;
+    static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
+    glm::dvec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn) const;
+    static bool scatters(const Optics& m);
+    static glm::dvec3 draw_scattered(const Lit& at, glm::dvec2 random);
+    static double scattered_density(const Lit& at, const glm::dvec3& direction);
+    glm::dvec3 environment_light(const Lit& at);
+    Branch diffuse_branch(const Lit& at) const;
+    double emitter_density(uint32_t triangle, double probability, const glm::dvec3& direction, double distance) const;
+    double emission_share(const Path& path, const OracleHit& hit) const;
+    glm::dvec3 emitter_light(const Lit& at);
     glm::dvec3 visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance, uint32_t triangle,
                           Media media) const;
     double index_of(uint32_t medium, Channel channel) const;
@@ -151,7 +215,7 @@ class Shader {
     glm::dvec3 transmittance(uint32_t medium, double distance) const;
 
     const RenderContext& context_;
-    uint32_t sample_;
+    PixelSample sample_;
     RayCounts rays_;
     glm::dvec3 unlit_{0};
 };

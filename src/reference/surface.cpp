@@ -321,41 +321,4 @@ void Surfaces::stretch(Surface& s, const Place& place, const glm::dvec3& normal)
     s.optics.anisotropy = strength;
 }
 
-glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {
-    size_t offset = 0;
-    uint32_t width = environment_.width, height = environment_.height;
-    for (uint32_t i = 0; i < level; i++) {
-        offset += size_t(width) * height;
-        width = std::max(width / 2, 1u);
-        height = std::max(height / 2, 1u);
-    }
-    return bilinear(uv * glm::dvec2(width, height), [&](int x, int y) {
-        const auto column = size_t((x + int(width)) % int(width)), row = size_t(std::clamp(y, 0, int(height) - 1));
-        return glm::dvec3(environment_.texels[offset + row * width + column]);
-    });
-}
-
-glm::dvec3 Surroundings::radiance(const glm::dvec3& d, double blur) const {
-    const glm::dvec2 uv(0.5 + std::atan2(d.x, -d.z) / (2 * optics::pi),
-                        std::acos(std::clamp(d.y, -1.0, 1.0)) / optics::pi);
-    const double exact = blur * (environment_.levels - 1);
-    const auto lower = uint32_t(exact), upper = std::min(lower + 1, environment_.levels - 1);
-    return exact > lower ? glm::mix(level(uv, lower), level(uv, upper), exact - lower) : level(uv, lower);
-}
-
-glm::dvec3 Surroundings::seen(const glm::dvec3& d, bool sees_sun) const {
-    const glm::dvec3 all = radiance(d, 0);
-    if (!sees_sun) return all * std::min(1.0, double(environment_.rough_limit) / std::max(optics::largest(all), 1e-30));
-    const bool sun = glm::dot(d, glm::dvec3(environment_.sun_direction)) >= double(environment_.sun_cosine);
-    return sun ? all + glm::dvec3(environment_.sun_radiance) : all;
-}
-
-glm::dvec3 Surroundings::irradiance(const glm::dvec3& n) const {
-    const double basis[9] = {
-        1, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3 * n.z * n.z - 1, n.x * n.z, n.x * n.x - n.y * n.y};
-    glm::dvec3 sum(0);
-    for (int i = 0; i < 9; i++) sum += glm::dvec3(environment_.irradiance[size_t(i)]) * basis[i];
-    return glm::max(sum, glm::dvec3(0));
-}
-
 }  // namespace peelray

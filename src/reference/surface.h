@@ -1,12 +1,11 @@
-// The scene as shading sees it, in double precision: materials, the surface at a hit, the environment. Private to
-// src/reference.
+// The scene as shading sees it, in double precision: materials, the surface at a hit. Private to src/reference.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
-#include "scene/environment.h"
 #include "scene/mipmaps.h"
 #include "scene/picture.h"
 #include "scene/scene.h"
@@ -42,6 +41,8 @@ struct Optics {
     Optics() = default;
     explicit Optics(const Material& material);
     bool transmits() const { return transmission > 0 && metallic < 1; }
+    /// Does a clear coat mirror along the same ray as what is below? The second is the one that goes through.
+    bool shares_branch() const { return clearcoat > 0 && (transmits() || alpha < 1); }
     /// What the light that is not reflected is multiplied by on its way through.
     glm::dvec3 tint() const { return (1 - metallic) * transmission * base_color; }
     /// Is a ray that meets the surface from its `front` or back inside of the volume?
@@ -102,6 +103,11 @@ class Surfaces {
     Surface at(uint32_t triangle, double u, double v, const glm::dvec3& direction, double width = 0) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const glm::dvec3& direction) const;
+    /// Of a triangle.
+    std::array<glm::dvec3, 3> corners(uint32_t triangle) const {
+        const glm::uvec3 at = geometry_.triangles[triangle];
+        return {geometry_.positions[at.x], geometry_.positions[at.y], geometry_.positions[at.z]};
+    }
     /// A material's constants, without its textures.
     const Optics& optics(uint32_t material) const { return optics_[material]; }
     bool lets_through(uint32_t material) const { return peelray::lets_through(scene_.materials[material]); }
@@ -140,24 +146,6 @@ class Surfaces {
     const Geometry& geometry_;
     std::vector<Optics> optics_;
     Mipmaps mipmaps_;
-};
-
-/// Light from outside the scene; the environment must outlive it.
-class Surroundings {
-  public:
-    explicit Surroundings(const Environment& environment) : environment_(environment) {}
-
-    /// Radiance along a unit direction without the sun's disc; `blur` in [0, 1]: a surface's roughness.
-    glm::dvec3 radiance(const glm::dvec3& direction, double blur) const;
-    /// What a ray that hits nothing sees.
-    glm::dvec3 seen(const glm::dvec3& direction, bool sees_sun) const;
-    /// Of the environment on a surface with this normal, from nine harmonics.
-    glm::dvec3 irradiance(const glm::dvec3& normal) const;
-
-  private:
-    glm::dvec3 level(const glm::dvec2& uv, uint32_t level) const;
-
-    const Environment& environment_;
 };
 
 }  // namespace peelray

@@ -24,8 +24,8 @@ struct Environment {
     float sun_cosine = 2;              ///< cosine of the disc's angular radius; 2: no disc
     float rough_limit = 1e30f;  ///< radiance above this belongs to `lights`: rays after a rough surface see no more
     std::vector<Light> lights;  ///< directional lights that stand for the sun or the image's brightest spot
-    bool is_pyramid = false;    ///< its levels are means of texels
     bool is_image = false;      ///< of which `lights` stand for a part; else they add to the texels
+    bool is_pyramid = false;    ///< its levels are means of the one before: what a wider ray sees
     EnvironmentDistribution distribution;  ///< of the texels; empty unless EnvironmentMode::sampled
 };
 

@@ -47,7 +47,7 @@ double radiance_at(const Environment& environment, double x, double y) {
 EnvironmentDistribution::EnvironmentDistribution(const Environment& environment) : depth(depth_for(environment)) {
     const uint32_t height = 1u << depth, width = 2 * height;
     // Lookups interpolate: a few points of each texel that a cell covers make its mean. Three points a side integrate
-    // what is linear on either side of a texel's centre exactly (Simpson).
+    // what is linear on either side of a texel's centre exactly (the trapezoidal rule).
     const uint32_t across = std::max(1u, (environment.width + width - 1) / width),
                    down = std::max(1u, (environment.height + height - 1) / height);
     std::vector<double> cells(size_t(width) * height);
@@ -57,7 +57,7 @@ EnvironmentDistribution::EnvironmentDistribution(const Environment& environment)
             double sum = 0;
             for (uint32_t i = 0; i < 9 * across * down; i++) {
                 const uint32_t column = i % (3 * across), row = i / (3 * across);
-                const double weight = (column % 3 == 1 ? 4.0 : 1.0) * (row % 3 == 1 ? 4.0 : 1.0);
+                const double weight = (column % 3 == 1 ? 2.0 : 1.0) * (row % 3 == 1 ? 2.0 : 1.0);
                 const double px = x + (column / 3 + 0.5 * (column % 3)) / across,
                              py = double(y) + (row / 3 + 0.5 * (row % 3)) / down;
                 sum +=

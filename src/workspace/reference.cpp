@@ -7,10 +7,19 @@
 #include <chrono>
 #include <thread>
 
+#include "assembly/emitters.h"
 #include "base/text.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {
+
+/// Triangles to look for light on. Dividing the scene up takes time: only where something emits.
+static Emitters emitters_in(const PosedScene& posed, const PictureSettings& settings) {
+    const Scene& scene = posed.scene();
+    const bool any =
+        std::ranges::any_of(scene.materials, [](const Material& m) { return !m.unlit && m.emissive != glm::vec3(0); });
+    return any && samples_emitters(settings) ? emitters_of(scene, posed.assembly()) : Emitters{};
+}
 
 MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings,
                               const std::function<void(double)>& progress) {
@@ -18,7 +27,7 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
     const Geometry& geometry = scene.geometry();
-    const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment());
+    const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment(), emitters_in(scene, settings));
     const auto built = Clock::now();
     MadePicture made;
     made.picture = tracer.render(settings, progress);

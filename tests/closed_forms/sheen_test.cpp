@@ -1,6 +1,8 @@
 // The sheen of cloth (KHR_materials_sheen): light that it takes is missing below, and nothing else.
 #include <pictures.h>
 
+#include "lobes.h"
+
 namespace peelray {
 namespace {
 
@@ -20,35 +22,6 @@ Material with_sheen(Material m, const glm::vec3& color, float roughness) {
     m.sheen_color = color;
     m.sheen_roughness = roughness;
     return m;
-}
-
-/// Estevez and Kulla's lobe without its cosine, by the rows of their table.
-double fibres(double roughness, const glm::dvec3& view, const glm::dvec3& to_light) {
-    const double alpha = std::pow(std::max(roughness, 0.07), 2), t = std::pow(1 - alpha, 2);
-    const auto mixed = [&](double smooth, double rough) { return rough + (smooth - rough) * t; };
-    const double a = mixed(25.3245, 21.5473), b = mixed(3.32435, 3.82987), c = mixed(0.16801, 0.19823),
-                 d = mixed(-1.27393, -1.97760), e = mixed(-4.85967, -4.32054);
-    const auto l = [&](double x) { return a / (1 + b * std::pow(x, c)) + d * x + e; };
-    const auto lambda = [&](double x) { return std::exp(x < 0.5 ? l(x) : 2 * l(0.5) - l(1 - x)); };
-    const glm::dvec3 half = glm::normalize(view + to_light);
-    const double sine = std::hypot(half.x, half.y);
-    return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) / (2 * kPi) /
-           ((1 + lambda(view.z) + lambda(to_light.z)) * 4 * view.z * to_light.z);
-}
-
-/// Of light from everywhere: by the angle to the normal and around it.
-double fibre_albedo(double roughness, double cosine) {
-    const int rings = 300, sectors = 60;
-    double sum = 0;
-    for (int i = 0; i < rings; i++) {
-        const double angle = (i + 0.5) / rings * kPi / 2;
-        for (int k = 0; k < sectors; k++) {
-            const double around = (k + 0.5) / sectors * kPi;
-            const glm::dvec3 l(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle));
-            sum += fibres(roughness, to_slanted(cosine), l) * l.z * std::sin(angle);
-        }
-    }
-    return std::min(1.0, sum * kPi * kPi / (rings * sectors));
 }
 
 TEST_F(SheenTest, OnBlackItSendsItsAlbedo) {

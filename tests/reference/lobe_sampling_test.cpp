@@ -1,4 +1,4 @@
-// Every lobe that the reference samples, and its random numbers: chi-square tests against the densities.
+// Every lobe that the reference samples: chi-square tests against the densities.
 #include <gtest/gtest.h>
 
 #include "reference/optics.h"
@@ -56,26 +56,6 @@ TEST(LobeSampling, DirectionsToTheSky) {
         const auto [name, mass, fit] = fit_cosine(normal, directions);
         EXPECT_NEAR(mass, 1, 1e-5);
         EXPECT_GT(fit.p, sidak(level, 3)) << fit;
-    }
-}
-
-/// Of seeds in a row, and of the seeds that follow from them along a path; together with those of another purpose, of
-/// the next seed and of the path's first bounce.
-TEST(LobeSampling, RandomPairsOfManySeeds) {
-    const double least = sidak(level, 18);
-    for (const uint32_t index : {0u, 1u, 1000u}) {
-        std::vector<glm::vec2> facet, sky, next, both, neighbours, bounces;
-        for (uint32_t seed = 0; seed < 100000; seed++) {
-            const uint32_t reflected = hash3({seed, 0, 0}).x;
-            facet.push_back(random_pair(seed, index, Purpose::microfacet));
-            sky.push_back(random_pair(seed, index, Purpose::sky));
-            next.push_back(random_pair(reflected, index, Purpose::microfacet));
-            both.emplace_back(facet.back().x, sky.back().x);
-            neighbours.emplace_back(facet.back().x, random_pair(seed + 1, index, Purpose::microfacet).x);
-            bounces.emplace_back(facet.back().x, next.back().x);
-        }
-        for (const auto* pairs : {&facet, &sky, &next, &both, &neighbours, &bounces})
-            EXPECT_GT(fit_uniform(*pairs).p, least) << fit_uniform(*pairs);
     }
 }
 

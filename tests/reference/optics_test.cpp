@@ -1,5 +1,6 @@
 // The reference's optics against figures that stand in textbooks or follow from them by hand.
 #include "reference/optics.h"
+#include "reference/random_numbers.h"
 
 #include <gtest/gtest.h>
 
@@ -87,7 +88,7 @@ TEST(Ggx, SamplesFollowTheVisibleNormals) {
         double sum = 0;
         const int n = 20000;
         for (int i = 0; i < n; i++)
-            sum += sample_ggx(view, glm::dvec2(alpha), random_pair(7, uint32_t(i), Purpose::microfacet)).z;
+            sum += sample_ggx(view, glm::dvec2(alpha), random_pair(7, 0, RANDOM_MICROFACET, {uint32_t(i), 16, 0})).z;
         EXPECT_NEAR(sum / n, expected, 2e-3) << alpha;
     }
 }
@@ -102,7 +103,7 @@ TEST(Ggx, StretchedLobesAreLobes) {
             return lobe.distribution(h) * lobe.masking(view) * std::max(0.0, glm::dot(view, h)) / view.z * h[k];
         });
     const int n = 20000;
-    for (int i = 0; i < n; i++) sum += lobe.sample(view, random_pair(7, uint32_t(i), Purpose::microfacet));
+    for (int i = 0; i < n; i++) sum += lobe.sample(view, random_pair(7, 0, RANDOM_MICROFACET, {uint32_t(i), 16, 0}));
     EXPECT_LT(glm::length(sum / double(n) - expected), 3e-3);
     EXPECT_EQ(lobe.masking({0.6, 0, -0.8}), 0);
 }

@@ -3,6 +3,7 @@
 
 #include <scenes.h>
 
+#include "assembly/emitters.h"
 #include "motion/animation.h"
 #include "reference/path_tracer.h"
 
@@ -30,7 +31,9 @@ class PictureTest : public testing::Test {
         if (settings.tracer == Tracer::none)
             settings.reflection = settings.refraction = settings.shadow = settings.ambient = false;
         const Geometry geometry = flatten(stage.scene);
-        return PathTracer(stage.scene, at_rest(stage.scene), geometry, environment).render(settings, {}, threads);
+        const Moment rest = at_rest(stage.scene);
+        const Emitters emitters = emitters_of(stage.scene, assemble(stage.scene, rest, motion_of(stage.scene, "")));
+        return PathTracer(stage.scene, rest, geometry, environment, emitters).render(settings, {}, threads);
     }
     /// Of a moment of the scene's first animation, if it has any; with Aovs::motion since the moment `before`.
     Picture render_at(const Scene& scene, double time, double before, RenderSettings settings) {

@@ -1,0 +1,27 @@
+// The emissive triangles of a scene, for drawing one and for looking one up. Private to src/reference.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/emitters.h"
+
+namespace peelray {
+
+class EmitterList {
+  public:
+    /// `triangles`: as many as the scene has.
+    EmitterList(std::span<const Emitter> emitters, size_t triangles);
+
+    bool empty() const { return emitters_.empty(); }
+    /// Each as often as its probability says; `random` in [0, 1). Of none there is nothing to choose.
+    const Emitter& choose(double random) const;
+    /// Of a triangle being chosen; 0: it is none of them.
+    double probability(uint32_t triangle) const { return empty() ? 0 : double(probabilities_[triangle]); }
+
+  private:
+    Emitters emitters_;
+    std::vector<float> probabilities_;  ///< by triangle; empty where nothing emits
+};
+
+}  // namespace peelray

@@ -1,0 +1,82 @@
+#include "reference/random_numbers.h"
+
+#include <bit>
+
+#include "path/shading_numbers.h"
+
+namespace peelray {
+namespace {
+
+/// x in the even bits, y in the odd ones.
+uint32_t morton(uint32_t x, uint32_t y) {
+    uint32_t code = 0;
+    for (uint32_t bit = 0; bit < 16; bit++) code |= (x >> bit & 1) << 2 * bit | (y >> bit & 1) << (2 * bit + 1);
+    return code;
+}
+
+uint32_t reversed(uint32_t v) {
+    v = (v >> 1 & 0x55555555u) | (v & 0x55555555u) << 1;
+    v = (v >> 2 & 0x33333333u) | (v & 0x33333333u) << 2;
+    v = (v >> 4 & 0x0f0f0f0fu) | (v & 0x0f0f0f0fu) << 4;
+    v = (v >> 8 & 0x00ff00ffu) | (v & 0x00ff00ffu) << 8;
+    return v >> 16 | v << 16;
+}
+
+/// Each bit is flipped or not by a hash of the bits above it (Burley, Practical Hash-based Owen Scrambling, JCGT 2020;
+/// the hash of Laine and Karras with constants by Vegdahl).
+uint32_t scrambled(uint32_t v, uint32_t key) {
+    uint32_t r = reversed(v);
+    r ^= r * 0x3d20adeau;
+    r += key;
+    r *= key >> 16 | 1;
+    r ^= r * 0x05526c56u;
+    r ^= r * 0x53a22864u;
+    return reversed(r);
+}
+
+/// The second dimension: each direction number is the one before, exclusive or itself a place lower.
+uint32_t sobol(uint32_t index) {
+    uint32_t point = 0;
+    for (uint32_t number = 1u << 31; index != 0; index >>= 1, number ^= number >> 1)
+        if (index & 1) point ^= number;
+    return point;
+}
+
+}  // namespace
+
+glm::uvec3 hash3(glm::uvec3 v) {
+    const auto mix = [&] {
+        v.x += v.y * v.z;
+        v.y += v.z * v.x;
+        v.z += v.x * v.y;
+    };
+    v = v * 1664525u + 1013904223u;
+    mix();
+    v ^= v >> 16u;
+    mix();
+    return v;
+}
+
+uint32_t path_seed(uint32_t x, uint32_t y) {
+    return morton(x, y) << RANDOM_BRANCH_BITS;
+}
+
+uint32_t branch_seed(uint32_t seed, uint32_t which, uint32_t level) {
+    constexpr uint32_t branches = (1u << RANDOM_BRANCH_BITS) - 1;
+    return (seed & ~branches) | (hash3({seed & branches, which, level}).x & branches);
+}
+
+uint32_t PixelSample::bits_for(uint32_t spp) {
+    return uint32_t(std::bit_width(spp - 1));
+}
+
+glm::dvec2 random_pair(uint32_t seed, uint32_t level, uint32_t purpose, const PixelSample& sample) {
+    const uint32_t branch = seed & ((1u << RANDOM_BRANCH_BITS) - 1);
+    const glm::uvec3 key = hash3({branch | level << RANDOM_BRANCH_BITS, purpose, sample.picture});
+    const uint32_t index = (seed >> RANDOM_BRANCH_BITS) << sample.bits | sample.number;
+    const uint32_t shuffled = scrambled(index, key.x);
+    const uint32_t x = scrambled(reversed(shuffled), key.y), y = scrambled(sobol(shuffled), key.z);
+    return glm::dvec2(x >> 8, y >> 8) / 16777216.0;
+}
+
+}  // namespace peelray
