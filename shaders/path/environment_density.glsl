@@ -45,8 +45,8 @@ vec3 environmentDirection(vec2 random) {
 float environmentDensity(vec3 d) {
     const uint depth = frame[0].env_depth, half_width = 1u << depth;
     const float rows = float(half_width);
-    const uint column = min(uint((1.0 + atan(d.x, -d.z) / PI) * rows), 2u * half_width - 1u);
-    const uint row = min(uint(acos(clamp(d.y, -1.0, 1.0)) / PI * rows), half_width - 1u);
+    const uvec2 cell = min(uvec2(equirectangular(d) * vec2(2.0 * rows, rows)), uvec2(2u * half_width - 1u, half_width - 1u));
+    const uint column = cell.x, row = cell.y;
     const uint half_code = column >> depth, code = half_code << 2u * depth | spreadBits(column - half_code * half_width) | spreadBits(row) << 1;
     const float solid_angle = PI / rows * (cos(PI * float(row) / rows) - cos(PI * float(row + 1u) / rows));
     return lookups[firstQuad(depth) + (code >> 2)][code & 3u] / solid_angle;

@@ -182,7 +182,7 @@ vec3 environmentLevel(vec2 uv, uint level) {
 
 /// Radiance of the environment along a unit direction, without the sun's disc; `level`: 0 the finest, at most the last.
 vec3 environmentAt(vec3 d, float level) {
-    const vec2 uv = vec2(0.5 + atan(d.x, -d.z) * (0.5 / PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
+    const vec2 uv = equirectangular(d);
     const uint lower = uint(level);
     const vec3 sharp = environmentLevel(uv, lower);
     const float part = level - float(lower);

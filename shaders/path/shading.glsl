@@ -10,6 +10,29 @@ vec3 srgbToLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(
 vec3 linearToSrgb(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
+/// The angle of the vector (x, y) from the x axis, (-π, π], to 2·10⁻⁷. Vulkan lets atan be 1000 times as far off, and some drivers make use
+/// of that: a tenth of a texel of an environment map, which shows beside the sun.
+float angleOf(float y, float x) {
+    const float ax = abs(x), ay = abs(y), longer = max(ax, ay);
+    const float r = longer > 0.0 ? min(ax, ay) / longer : 0.0, r2 = r * r;
+    // Minimax on [0, 1], fitted by Lawson's iteration.
+    float a = 0.0024567225;
+    a = a * r2 - 0.014401349;
+    a = a * r2 + 0.039781209;
+    a = a * r2 - 0.072348557;
+    a = a * r2 + 0.104989454;
+    a = a * r2 - 0.141612291;
+    a = a * r2 + 0.199859068;
+    a = a * r2 - 0.333325982;
+    a = (a * r2 + 0.99999988) * r;
+    if (ay > ax) a = 0.5 * PI - a;
+    if (x < 0.0) a = PI - a;
+    return y < 0.0 ? -a : a;
+}
+
+/// Where a direction is in an environment map, [0, 1].
+vec2 equirectangular(vec3 d) { return vec2(0.5 + angleOf(d.x, -d.z) * (0.5 / PI), angleOf(length(d.xz), d.y) / PI); }
+
 /// Unpolarised Fresnel reflectance of a dielectric; `cosine` ≥ 0 on the incoming side, `eta` = index behind / index before.
 /// 1 at total internal reflection.
 float fresnelDielectric(float cosine, float eta) {

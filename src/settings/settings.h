@@ -82,6 +82,7 @@ struct LightArguments {
     std::string env;
     bool sky = false;
     std::optional<glm::vec3> background;
+    float light_radius = 0;                   ///< world units
     std::optional<EnvironmentMode> env_mode;  ///< none: sampled where it is an image
     float exposure = 0;                       ///< stops
     Tonemap tonemap = Tonemap::neutral;
@@ -114,6 +115,13 @@ inline void add_light(SettingList& list, LightArguments& a) {
                  .help = "how the environment lights what is no mirror: by sampling where it is bright, behind what is "
                          "in the way; or as if nothing were, without noise; auto: images and the studio are sampled",
                  .none = "auto"});
+    add_setting(list, a.light_radius,
+                {.name = "light-radius",
+                 .group = group,
+                 .help = "of the balls that the scene's point and spot lights are, in world units: several samples per "
+                         "pixel see their shadows soften",
+                 .form = "R",
+                 .limits = {.least = 0, .fault = "a light cannot have the radius {}", .choose = "0 or more"}});
     add_setting(
         list, a.exposure,
         {.name = "exposure",

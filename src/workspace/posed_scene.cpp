@@ -60,6 +60,8 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     if (!animation_.empty()) complete_targets(*scene);
     frame_animation(*scene);
     own_nodes_ = scene->nodes.size();
+    for (Light& light : scene->lights)
+        if (light.kind != Light::Kind::directional) light.radius = settings.light_radius;
     if (settings.material) override_materials(*scene, *settings.material, framed_);
     bounds_ = peelray::bounds(*scene, at_rest(*scene));
     const Box shown = settings.floor ? add_floor(*scene, framed_) : framed_;
