@@ -15,12 +15,13 @@ double Shader::emitter_density(uint32_t triangle, double probability, const glm:
     return projected > 0 ? 2 * probability * distance * distance / projected : 0;
 }
 
-/// What of the emission that a ray meets it is to bring; the rest is found by looking for it.
+/// What of the emission that a ray meets it is to bring; the rest is found by looking for it. Images of emitters on
+/// surfaces that scatter, by mirrors and glass, are left out: few rays would find them.
 double Shader::emission_share(const Path& path, const OracleHit& hit) const {
-    if (path.density == 0 || !context_.samples_emitters()) return 1;
+    if (!context_.samples_emitters() || (path.density == 0 && path.scattered == 0)) return 1;
     const double probability = context_.emitters.probability(hit.triangle);
     if (probability == 0) return 1;
-    if (path.density < 0) return 0;
+    if (path.density <= 0) return 0;
     return path.density / (path.density + emitter_density(hit.triangle, probability, path.direction, hit.t));
 }
 
@@ -37,7 +38,9 @@ glm::dvec3 Shader::emitter_light(const Lit& at) {
     const glm::dvec3 direction = way / distance;
     const double density = emitter_density(emitter.id, double(emitter.probability), direction, distance);
     if (density == 0) return glm::dvec3(0);
-    const glm::dvec3 share = scattered_from(at, direction) / density + mirrored_from(at, {direction, density});
+    const bool followed = context_.settings.reflection && !is_last(at.path, false);
+    const glm::dvec3 share =
+        scattered_from(at, direction) / density + mirrored_from(at, {direction, density}, followed);
     if (share == glm::dvec3(0) || !context_.bvh.alpha.is_present(emitter.id, u, v)) return glm::dvec3(0);
     const Surface lamp = context_.surfaces.at(emitter.id, u, v, direction);
     if (!lamp.front && context_.bvh.sides.is_single(emitter.id)) return glm::dvec3(0);

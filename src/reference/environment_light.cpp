@@ -48,8 +48,8 @@ glm::dvec3 Shader::scattered_from(const Lit& at, const glm::dvec3& direction) {
 }
 
 /// Of light from a drawn direction, what the lobes mirror over the density of such directions: the light's, and that of
-/// the lobe's own samples, which bring the rest.
-glm::dvec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn) const {
+/// the lobe's own samples, which bring the rest if they are followed.
+glm::dvec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const {
     const Surface& s = at.surface;
     const Optics& m = s.optics;
     const bool through = m.behind > 0 && glm::dot(s.normal, drawn.direction) < 0;
@@ -61,15 +61,16 @@ glm::dvec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn
     if (const double density = lobe_of(s).density(view, drawn.direction); density > 0) {
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
-        const double traced = m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
+        const double traced = !followed ? 0 : m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
         sum = specular(s, at.path, fresnel, at.seen.n_v, drawn.direction) * at.seen.sheen * (1 - at.seen.coat) /
               (drawn.density + traced * density);
     }
     if (m.clearcoat == 0) return sum;
     const Lobe coat = coat_lobe(s);
-    const double density = coat.density(view, drawn.direction);
-    return sum + coat_reflectance(m, v_h) * density * coat.masking(drawn.direction) /
-                     (drawn.density + traced_part(m.coat_roughness, 0) * density);
+    const double density = coat.density(view, drawn.direction),
+                 traced = followed ? traced_part(m.coat_roughness, 0) : 0;
+    return sum +
+           coat_reflectance(m, v_h) * density * coat.masking(drawn.direction) / (drawn.density + traced * density);
 }
 
 bool Shader::scatters(const Optics& m) {
@@ -112,7 +113,7 @@ glm::dvec3 Shader::environment_light(const Lit& at) {
     const double mixed = by_brightness * drawn.density + (1 - by_brightness) * scattered_density(at, drawn.direction);
     glm::dvec3 share(0);
     if (scattering && mixed > 0) share = scattered_from(at, drawn.direction) / mixed;
-    if (bright) share += mirrored_from(at, drawn) / by_brightness;
+    if (bright) share += mirrored_from(at, drawn, true) / by_brightness;
     if (share == glm::dvec3(0)) return share;
     const glm::dvec3 light = share * context_.surroundings.radiance(drawn.direction, 0);
     if (light == glm::dvec3(0)) return light;

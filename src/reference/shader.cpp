@@ -97,12 +97,13 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     return branch.weight * radiance(next, hit(next));
 }
 
-/// Has the path come as far as it is followed? Diffuse bounces are counted apart.
-bool Shader::is_last(const Branch& branch, const Path& path) const {
+/// Has the path come as far as it is followed, but for what `passes` straight through a blended surface? Diffuse
+/// bounces are counted apart.
+bool Shader::is_last(const Path& path, bool passes) const {
     const PictureSettings& settings = context_.settings;
     if (path.level >= last_level(settings, context_.has_blended)) return true;
     const uint32_t most = bounce_levels(settings, context_.has_blended);
-    return path.level - path.scattered >= (branch.passes ? most : std::min(most, settings.bounces + path.passed));
+    return path.level - path.scattered >= (passes ? most : std::min(most, settings.bounces + path.passed));
 }
 
 /// Is it bright enough, and its effect on?
@@ -112,12 +113,12 @@ bool Shader::is_wanted(const Branch& branch, const Path& path) const {
 }
 
 bool Shader::is_traced(const Branch& branch, const Path& path) const {
-    return is_wanted(branch, path) && !is_last(branch, path);
+    return is_wanted(branch, path) && !is_last(path, branch.passes);
 }
 
 /// Would it be traced if it were not too far along the path? With no bounces at all nobody asked for it.
 bool Shader::is_cut(const Branch& branch, const Path& path) const {
-    return context_.settings.bounces > 0 && path.level > 0 && is_wanted(branch, path) && is_last(branch, path);
+    return context_.settings.bounces > 0 && path.level > 0 && is_wanted(branch, path) && is_last(path, branch.passes);
 }
 
 }  // namespace peelray

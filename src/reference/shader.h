@@ -157,7 +157,7 @@ class Shader {
     glm::dvec3 fade(Branch& branch, double roughness, double metallic) const;
     void add_coat(const Surface& surface, const Path& path, const Meeting& meeting, Scattered& scattered) const;
     void pass_beside(const Surface& surface, const Path& path, const Meeting& meeting, Scattered& scattered) const;
-    bool is_last(const Branch& branch, const Path& path) const;
+    bool is_last(const Path& path, bool passes) const;
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
@@ -197,7 +197,7 @@ class Shader {
     double environment_share(const glm::dvec3& direction, double density) const;
     double environment_blur(const Cone& cone, double density) const;
     static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
-    glm::dvec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn) const;
+    glm::dvec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const;
     static bool scatters(const Optics& m);
     static glm::dvec3 draw_scattered(const Lit& at, glm::dvec2 random);
     static double scattered_density(const Lit& at, const glm::dvec3& direction);

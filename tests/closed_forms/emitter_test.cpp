@@ -46,7 +46,10 @@ TEST_F(EmitterTest, PanelsLightAsTheIntegralSays) {
             RenderSettings settings = sampled_settings(camera, 16, 4);
             settings.env_mode = mode;
             settings.energy_compensation = false;
-            estimate(stage, dark, settings, 8).expect(want, 5e-3);
+            for (const uint32_t bounces : {4u, 0u}) {
+                settings.bounces = bounces;
+                estimate(stage, dark, settings, 8).expect(want, 5e-3);
+            }
         }
     }
 }
