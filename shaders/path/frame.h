@@ -17,8 +17,9 @@ struct GpuLight {
     float cone_scale;  ///< spot: attenuation = clamp(cosine * scale + offset)^2 (KHR_lights_punctual)
     float cone_offset;
     float sine;  ///< directional: of its disc's angular radius; else the radius of its ball, world units
+    float cumulative;  ///< probability of it or one before it being tried, where one of many is drawn
 };
-SHARED_SIZE(GpuLight, 56);
+SHARED_SIZE(GpuLight, 60);
 
 /// Everything of a frame that does not change from pass to pass.
 struct Frame {
@@ -34,7 +35,9 @@ struct Frame {
     uint width;
     uint height;
     uint row_pixels;  ///< width rounded up to 8: records of one row of 8x8 tiles / 8
-    uint lights;
+    uint lights;       ///< all, or of `drawn_lamps` none
+    uint first_drawn;  ///< of the lamps of which one is drawn,
+    uint drawn_lamps;  ///< and how many these are; 0: all count
     // Environment.
     uvec2 env_size;
     uint env_levels;
@@ -63,7 +66,7 @@ struct Frame {
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
 };
-SHARED_SIZE(Frame, 352);
+SHARED_SIZE(Frame, 360);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

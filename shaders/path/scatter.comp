@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 6) const bool many_lamps = false;   // one of them is drawn
 layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
 layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
 layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
@@ -189,10 +190,56 @@ Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState sta
 
 /// Light that is drawn rather than summed up.
 struct DrawnLight {
-    LightSample environment, emitter;
-    float reach;  ///< distance to the emitter
+    LightSample environment, emitter, lamp;
+    float reach;      ///< distance to the emitter
+    uint lamp_index;
 };
-const DrawnLight NO_DRAWN_LIGHT = DrawnLight(LightSample(vec3(0), vec3(0)), LightSample(vec3(0), vec3(0)), 0.0);
+const DrawnLight NO_DRAWN_LIGHT = DrawnLight(LightSample(vec3(0), vec3(0)), LightSample(vec3(0), vec3(0)), LightSample(vec3(0), vec3(0)), 0.0, 0u);
+
+/// The k-th light that counts by itself.
+uint lampIndex(uint k) { return many_lamps && k >= frame[0].first_drawn ? k + frame[0].drawn_lamps : k; }
+
+/// The first lamp of those of which one is drawn whose cumulative probability is above a number; `probability`: its own.
+uint triedLamp(float random, out float probability) {
+    uint first = frame[0].first_drawn, last = first + frame[0].drawn_lamps - 1u;
+    [[dont_unroll]] while (first < last) {
+        const uint middle = (first + last) / 2u;
+        if (lights[middle].cumulative > random)
+            last = middle;
+        else
+            first = middle + 1u;
+    }
+    probability = lights[first].cumulative - (first > frame[0].first_drawn ? lights[first - 1u].cumulative : 0.0);
+    return first;
+}
+
+/// One of many lamps, for all of them (Talbot et al.: Importance Resampling for Global Illumination, 2005): lamps are tried by their
+/// intensity, and one of them is taken by what each would bring.
+void drawLamp(Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, inout DrawnLight found) {
+    const vec2 random = randomAt(seed, RANDOM_LAMP_CHOICE);
+    float sum = 0.0, choice = random.y;
+    vec3 light = vec3(0);
+    [[dont_unroll]] for (uint k = 0u; k < LAMPS_TRIED; k++) {
+        float probability;
+        const uint index = triedLamp((float(k) + random.x) / float(LAMPS_TRIED), probability);
+        vec3 direction;
+        const vec3 tried = arrivingLight(index, s, m, shade, view, from, seed, direction);
+        const float bright = abs(tried.r) + abs(tried.g) + abs(tried.b);
+        if (bright == 0.0 || probability == 0.0) continue;
+        const float weight = bright / probability;
+        sum += weight;
+        const float part = weight / sum;
+        if (choice < part) {
+            choice /= part;
+            light = tried / bright;
+            found.lamp_index = index;
+            found.lamp.direction = direction;
+        } else {
+            choice = (choice - part) / (1.0 - part);
+        }
+    }
+    found.lamp.light = light * (sum / float(LAMPS_TRIED));
+}
 
 /// Its light if no shadow ray is needed, one of which is counted otherwise.
 vec3 unlessTraced(inout LightSample found, Surface s, Shade shade, SurfaceId from, inout uint rays) {
@@ -213,7 +260,7 @@ vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId fr
     vec3 sum = vec3(0);
     for (uint k = 0u; k < frame[0].lights; k++) {
         vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, shade, view, from, state.seed, direction);
+        const vec3 light = arrivingLight(lampIndex(k), s, m, shade, view, from, state.seed, direction);
         if (light == vec3(0)) continue;
         if ((frame[0].effects & EFFECT_SHADOW) != 0u)
             rays++;
@@ -223,6 +270,10 @@ vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId fr
     if (env_sampled) {
         found.environment = environmentLight(s, m, shade, view, randomAt(state.seed, RANDOM_ENVIRONMENT));
         sum += unlessTraced(found.environment, s, shade, from, rays);
+    }
+    if (many_lamps) {
+        drawLamp(s, m, shade, view, from, state.seed, found);
+        sum += unlessTraced(found.lamp, s, shade, from, rays);
     }
     if (emitting) {
         const bool followed = (frame[0].effects & EFFECT_REFLECTION) != 0u && !isLast(state, false);
@@ -246,9 +297,14 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, DrawnLi
     if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
         for (uint k = 0u; k < frame[0].lights; k++) {
             vec3 direction;
-            const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
+            const uint index = lampIndex(k);
+            const vec3 light = arrivingLight(index, s, m, shade, view, from, seed, direction);
             const bool seeps = lightSeeps(s, shade, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, seeps), seeps ? behind : before, from, light * share);
+            if (light != vec3(0)) emitLight(slot++, lampRay(index, s, direction, seeps), seeps ? behind : before, from, light * share);
+        }
+        if (many_lamps && found.lamp.light != vec3(0)) {
+            const bool seeps = lightSeeps(s, shade, found.lamp.direction);
+            emitLight(slot++, lampRay(found.lamp_index, s, found.lamp.direction, seeps), seeps ? behind : before, from, found.lamp.light * share);
         }
         if (env_sampled && found.environment.light != vec3(0)) {
             const bool seeps = lightSeeps(s, shade, found.environment.direction);

@@ -82,7 +82,13 @@
 #define RANDOM_DIFFUSE 5
 #define RANDOM_EMITTER 6
 #define RANDOM_EMITTER_POINT 7
+#define RANDOM_LAMP_CHOICE 8
 #define RANDOM_LAMP 16  // and the lamp's index
+
+// Of more lamps with a place in the scene than this, sampled hits draw one: of so many that are tried, chosen by their
+// intensity, one by what it would bring (resampled importance sampling).
+#define LAMPS_EACH 8
+#define LAMPS_TRIED 8
 
 // Of the way to a point of an emissive triangle, what a shadow ray leaves out so that it does not meet the triangle.
 #define EMITTER_GAP 1e-4

@@ -86,17 +86,51 @@ glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& s
 glm::dvec3 Shader::direct_light(const Lit& at, bool sky) {
     glm::dvec3 sum(0);
     for (uint32_t i = 0; i < context_.lights.size(); i++) {
-        const Light& light = context_.lights[i];
-        const auto [irradiance, direction] = incidence(light, i, at);
-        if (irradiance == glm::dvec3(0)) continue;
-        const glm::dvec3 reflected = irradiance * reflectance(at.surface, at.path, at.seen, direction);
-        if (reflected == glm::dvec3(0)) continue;
-        const Start start = start_to(at, direction);
-        sum += reflected * arriving(at, start, direction, reach(light, start.point, direction));
+        if (context_.draws_lamps() && i - context_.lamps.first < context_.lamps.count) continue;
+        const LampLight found = lamp_light(i, at);
+        if (found.light != glm::dvec3(0)) sum += found.light * lamp_visibility(found, at);
     }
+    if (context_.draws_lamps()) sum += drawn_lamp(at);
     if (context_.samples_emitters()) sum += emitter_light(at);
     if (context_.samples_environment()) return sum + environment_light(at);
     return sky ? sum + sky_light(at) : sum;
+}
+
+/// What a lamp would bring.
+Shader::LampLight Shader::lamp_light(uint32_t index, const Lit& at) const {
+    const auto [irradiance, direction] = incidence(context_.lights[index], index, at);
+    if (irradiance == glm::dvec3(0)) return {index, direction, glm::dvec3(0)};
+    return {index, direction, irradiance * reflectance(at.surface, at.path, at.seen, direction)};
+}
+
+glm::dvec3 Shader::lamp_visibility(const LampLight& found, const Lit& at) {
+    const Start start = start_to(at, found.direction);
+    return arriving(at, start, found.direction, reach(context_.lights[found.index], start.point, found.direction));
+}
+
+/// One of many lamps for all: of some that are tried, one in proportion to what each would bring over how likely it was
+/// tried (Talbot et al. 2005). What the surface's own triangle hides is not tried.
+glm::dvec3 Shader::drawn_lamp(const Lit& at) {
+    const glm::dvec2 u = random(at.path, RANDOM_LAMP_CHOICE);
+    const std::vector<float>& cumulative = context_.lamps.cumulative;
+    LampLight drawn{};
+    double sum = 0, scale = 0, choice = u.y;
+    for (int k = 0; k < LAMPS_TRIED; k++) {
+        const auto chosen = std::upper_bound(cumulative.begin(), cumulative.end() - 1, float((k + u.x) / LAMPS_TRIED));
+        const double probability = *chosen - (chosen == cumulative.begin() ? 0.0f : *(chosen - 1));
+        const LampLight tried = lamp_light(context_.lamps.first + uint32_t(chosen - cumulative.begin()), at);
+        const glm::dvec3 light = glm::abs(tried.light);
+        const double bright = light.x + light.y + light.z;
+        if (probability == 0 || bright == 0 || hides_itself(at, tried.direction)) continue;
+        sum += bright / probability;
+        const double part = bright / probability / sum;
+        const bool taken = choice < part;
+        choice = taken ? choice / part : (choice - part) / (1 - part);
+        if (!taken) continue;
+        drawn = tried;
+        scale = 1 / bright;
+    }
+    return sum > 0 ? drawn.light * (scale * sum / LAMPS_TRIED) * lamp_visibility(drawn, at) : glm::dvec3(0);
 }
 
 /// Of a lamp with a size, from one of the directions in which it is seen; `index`: of the lamp.
@@ -146,11 +180,17 @@ Shader::Start Shader::start_to(const Lit& at, const glm::dvec3& direction) {
     return {from_behind ? s.start(s.position, direction) : s.lit_start(), from_behind};
 }
 
+/// A triangle that turns away from the light is itself in the way where it is no part of a bulge.
+bool Shader::hides_itself(const Lit& at, const glm::dvec3& direction) const {
+    const Surface& s = at.surface;
+    const bool from_behind = s.optics.behind > 0 && glm::dot(s.normal, direction) < 0;
+    return context_.settings.shadow && !from_behind && context_.surfaces.blocks_itself(s, at.triangle, direction);
+}
+
 /// Share of the light that arrives from as far away.
 glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance) {
     if (!context_.settings.shadow) return glm::dvec3(1);
-    // A triangle that turns away from the light is itself in the way where it is no part of a bulge.
-    if (!start.from_behind && context_.surfaces.blocks_itself(at.surface, at.triangle, direction)) return glm::dvec3(0);
+    if (hides_itself(at, direction)) return glm::dvec3(0);
     rays_.shadow++;
     return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
 }

@@ -115,7 +115,7 @@ struct PathTracer::Impl {
     Surfaces surfaces;
     Albedos albedos;
     Surroundings surroundings;
-    std::vector<Light> lights;  ///< the moment's, then the environment's
+    Lamps lamps;
     MediaRanks media;
     bool has_blended;
     const Scene& scene;
@@ -130,7 +130,7 @@ struct PathTracer::Impl {
           surfaces(scene, geometry),
           albedos(scene, surfaces),
           surroundings(environment),
-          lights(moment.lights),
+          lamps(lamps_of(moment.lights, environment.lights)),
           media(media_ranks(scene)),
           has_blended(std::ranges::any_of(geometry.materials,
                                           [&](uint32_t material) { return scene.materials[material].blended; })),
@@ -138,7 +138,6 @@ struct PathTracer::Impl {
           environment(environment),
           emitters(emitters, geometry.triangles.size()) {
         placed.worlds = moment.worlds;
-        lights.insert(lights.end(), environment.lights.begin(), environment.lights.end());
     }
 
     /// What the rays of a camera start in; those of an orthographic one have no one start, and start in air.
@@ -153,7 +152,7 @@ struct PathTracer::Impl {
         return s.env_mode == EnvironmentMode::sampled && environment.is_image;
     }
     std::span<const Light> lights_for(const PictureSettings& s) const {
-        return std::span(lights).first(lights.size() - (draws_image(s) ? environment.lights.size() : 0));
+        return std::span(lamps.lights).first(lamps.lights.size() - (draws_image(s) ? environment.lights.size() : 0));
     }
     double rough_limit_for(const PictureSettings& s) const {
         return draws_image(s) ? infinity : double(environment.rough_limit);
@@ -271,6 +270,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->albedos,
                                 impl_->surroundings,
                                 impl_->lights_for(settings),
+                                impl_->lamps,
                                 impl_->emitters,
                                 impl_->rough_limit_for(settings),
                                 impl_->media,

@@ -13,6 +13,7 @@
 #include "reference/random_numbers.h"
 #include "reference/surface.h"
 #include "reference/surroundings.h"
+#include "scene/lamps.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -24,6 +25,7 @@ struct RenderContext {
     const Albedos& albedos;
     const Surroundings& surroundings;
     std::span<const Light> lights;
+    const Lamps& lamps;
     const EmitterList& emitters;
     double rough_limit;  ///< radiance that rays after a rough surface see of the environment at most
     const MediaRanks& media;
@@ -33,6 +35,8 @@ struct RenderContext {
     bool has_blended;
 
     bool sampled() const { return is_sampled(settings); }
+    /// Is one lamp with a place drawn for all of them?
+    bool draws_lamps() const { return sampled() && lamps.count > LAMPS_EACH; }
     bool samples_emitters() const { return peelray::samples_emitters(settings) && !emitters.empty(); }
     bool samples_environment() const { return settings.env_mode == EnvironmentMode::sampled; }
 };
@@ -180,6 +184,15 @@ class Shader {
     glm::dvec3 direct_light(const Lit& at, bool sky);
     double radius_of(const Light& light) const { return context_.sampled() ? double(light.radius) : 0; }
     Incidence incidence(const Light& light, uint32_t index, const Lit& at) const;
+    /// What the surface would send of a lamp's light, if nothing were in its way.
+    struct LampLight {
+        uint32_t index;  ///< of the lamp
+        glm::dvec3 direction, light;
+    };
+    LampLight lamp_light(uint32_t index, const Lit& at) const;
+    glm::dvec3 lamp_visibility(const LampLight& found, const Lit& at);
+    glm::dvec3 drawn_lamp(const Lit& at);
+    bool hides_itself(const Lit& at, const glm::dvec3& direction) const;
     double reach(const Light& light, const glm::dvec3& start, const glm::dvec3& direction) const;
     /// Of a surface that light comes to from a direction.
     struct Start {

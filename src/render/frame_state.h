@@ -38,7 +38,8 @@ struct FrameState {
     uint32_t lights_per_hit() const {
         if (!tracer->traces()) return 0;
         const uint32_t skies = scene.base_colors.kinds & MATERIALS_SEEPING ? 2 : 1;  // in front, and behind
-        const uint32_t lamps = settings.shadow ? scene.lamps(env_sampled()) : 0;
+        const uint32_t many = drawn_lamps(), all = scene.lamps(env_sampled()) - many + (many > 0 ? 1 : 0);
+        const uint32_t lamps = settings.shadow ? all : 0;
         const uint32_t drawn = settings.shadow && emitting() ? 1 : 0;
         if (env_sampled()) return lamps + drawn + (settings.shadow ? 1 : 0);
         return lamps + drawn + (settings.ambient ? skies : 0);
@@ -47,6 +48,8 @@ struct FrameState {
     bool env_sampled() const { return settings.env_mode == EnvironmentMode::sampled && !maps; }
     /// Are diffuse bounces followed?
     bool indirect() const { return settings.gi > 0 && tracer->traces(); }
+    /// Lamps of which each hit draws one; 0: all count.
+    uint32_t drawn_lamps() const { return is_sampled(settings) && !maps ? scene.drawn_lamps() : 0; }
     /// Is light looked for on emissive triangles?
     bool emitting() const { return scene.emitters() > 0 && !maps && samples_emitters(settings); }
     /// Are rays traced that may be in several media at once?

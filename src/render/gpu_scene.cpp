@@ -14,6 +14,7 @@
 #include "render/base_colors.h"
 #include "render/transforms.h"
 #include "scene/alpha_test.h"
+#include "scene/lamps.h"
 #include "scene/pi.h"
 #include "scene/picture.h"
 #include "scene/sidedness.h"
@@ -110,7 +111,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
         has_blended |= used[i] && scene.materials[i].blended;
         has_unlit |= used[i] && scene.materials[i].unlit;
     }
-    for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
+    environment_lights_ = env.lights;
     upload_media(commands);
     static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
     const std::vector<glm::vec4> emitters = emitter_table(emitters_of(scene, assembly));
@@ -184,8 +185,11 @@ MediaStack GpuScene::media_at(const Scene& scene, const Moment& moment, const gl
 
 void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) {
     std::vector<GpuLight> list;
-    for (const Light& light : own) list.push_back(gpu_light(light));
-    list.insert(list.end(), environment_lights_.begin(), environment_lights_.end());
+    const Lamps lamps = lamps_of(own, environment_lights_);
+    for (const Light& light : lamps.lights) list.push_back(gpu_light(light));
+    for (uint32_t i = 0; i < lamps.count; i++) list[lamps.first + i].cumulative = lamps.cumulative[i];
+    first_placed_ = lamps.first;
+    placed_lamps_ = lamps.count;
     const size_t bytes = list.size() * sizeof(GpuLight);
     if (lights && list.size() == light_list.size() && std::memcmp(list.data(), light_list.data(), bytes) == 0) return;
     light_list = std::move(list);

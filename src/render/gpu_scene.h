@@ -7,6 +7,7 @@
 #include "ldc/triangle_buffers.h"
 #include "path/frame.h"
 #include "path/media_params.h"
+#include "path/shading_numbers.h"
 #include "render/deformer.h"
 #include "render/generators.h"
 #include "scene/environment.h"
@@ -60,6 +61,9 @@ class GpuScene {
     void describe(Frame& frame, bool env_sampled) const;
     /// Lamps that a frame with or without it has, the sun included.
     uint32_t lamps(bool env_sampled) const;
+    /// Lamps of which hits draw one where lobes are sampled; 0: there are few.
+    uint32_t drawn_lamps() const { return placed_lamps_ > LAMPS_EACH ? placed_lamps_ : 0; }
+    uint32_t first_drawn() const { return first_placed_; }
     /// Triangles that light is looked for on.
     uint32_t emitters() const { return emitters_; }
 
@@ -75,7 +79,8 @@ class GpuScene {
     Generators generators_;
     MediaRanks media_order_;
     MediaPieces media_pieces_;
-    std::vector<GpuLight> environment_lights_;
+    std::vector<Light> environment_lights_;
+    uint32_t first_placed_ = 0, placed_lamps_ = 0;
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0;
     bool env_is_image_ = false;

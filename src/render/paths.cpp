@@ -40,6 +40,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                                                  {"env_sampled", f.env_sampled()},
                                                  {"indirect", f.indirect()},
                                                  {"emitting", f.emitting()},
+                                                 {"many_lamps", f.drawn_lamps() > 0},
                                                  {"material_kinds", kinds}});
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));

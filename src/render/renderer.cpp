@@ -200,6 +200,9 @@ void Renderer::Impl::prepare_view() {
     frame.seed = settings.seed;
     frame.bounces = settings.bounces;
     frame.bounce_levels = bounce_levels(settings, f.scene.has_blended);
+    frame.first_drawn = f.scene.first_drawn();
+    frame.drawn_lamps = f.drawn_lamps();
+    frame.lights -= frame.drawn_lamps;
     frame.emitters = f.emitting() ? f.scene.emitters() : 0;
     frame.gi = f.indirect() ? settings.gi : 0;
     frame.last_level = f.last_level;
