@@ -73,6 +73,9 @@ SettingList options_of(RenderArguments& a) {
                          print_text(aovs_of(AovSource::surface)) + ", or all of them; or out of " +
                          print_text(aovs_of(AovSource::ray_setup)) +
                          ": what the paper sets up for mirror rays (its Figure 7); or out of " +
+                         print_text(aovs_of(AovSource::samples)) +
+                         ": the squared error that the mean of a pixel's samples has to be expected to have, and how "
+                         "many there are; or out of " +
                          print_text(aovs_of(AovSource::costs)) +
                          ": what all rays of a pixel cost in the cubes, with a heat map NAME.KIND.png",
                  .form = "LIST",

@@ -15,8 +15,12 @@ static bool wants_costs(const RenderArguments& a) {
 RenderSettings render_settings(const RenderArguments& a) {
     RenderSettings settings = render_settings(static_cast<const PictureArguments&>(a));
     settings.counters = a.counters || wants_costs(a);
-    settings.aovs = std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return !cost_field(aov); });
-    settings.ray_setup = std::any_of(a.aovs.begin(), a.aovs.end(), is_ray_setup);
+    const auto any_from = [&](AovSource source) {
+        return std::any_of(a.aovs.begin(), a.aovs.end(), [&](Aov aov) { return is_from(source, aov); });
+    };
+    settings.ray_setup = any_from(AovSource::ray_setup);
+    settings.aovs = settings.ray_setup || any_from(AovSource::surface);
+    settings.moments = any_from(AovSource::samples);
     settings.motion = wants(a, Aov::motion);
     return settings;
 }

@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/infinity.h"
 #include "reference/optics.h"
+#include "reference/sample_sums.h"
 #include "reference/shader.h"
-#include "scene/encoding.h"
 #include "settings/limits.h"
 
 namespace peelray {
@@ -107,6 +107,19 @@ void prepare(Picture& picture, const PictureSettings& s) {
 #undef AOV_NOTHING
 }
 
+/// Does any triangle have such a material?
+template <typename Is>
+bool has_material(const Geometry& geometry, Is is) {
+    return std::ranges::any_of(geometry.materials, is);
+}
+
+/// Some samples of each pixel, which are to be added to a picture.
+struct Work {
+    Picture& picture;
+    SampleSums& sums;
+    uint32_t first_sample, end_sample;
+};
+
 }  // namespace
 
 struct PathTracer::Impl {
@@ -117,7 +130,7 @@ struct PathTracer::Impl {
     Surroundings surroundings;
     std::vector<Light> lights;  ///< the moment's, then the environment's
     MediaRanks media;
-    bool has_blended;
+    bool has_blended, has_unlit;
     const Scene& scene;
     const Environment& environment;
     EmitterList emitters;
@@ -132,8 +145,8 @@ struct PathTracer::Impl {
           surroundings(environment),
           lights(moment.lights),
           media(media_ranks(scene)),
-          has_blended(std::ranges::any_of(geometry.materials,
-                                          [&](uint32_t material) { return scene.materials[material].blended; })),
+          has_blended(has_material(geometry, [&](uint32_t i) { return scene.materials[i].blended; })),
+          has_unlit(has_material(geometry, [&](uint32_t i) { return scene.materials[i].unlit; })),
           scene(scene),
           environment(environment),
           emitters(emitters, geometry.triangles.size()) {
@@ -162,9 +175,9 @@ struct PathTracer::Impl {
     /// Numbers as Geometry::objects does.
     uint32_t object_of(uint32_t triangle) const;
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
-    void pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+    void pixel(Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                RayCounts& rays) const;
-    RayCounts work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
+    RayCounts work(Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                    const std::function<void(double)>& progress) const;
 };
 
@@ -202,25 +215,20 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.directions[at] = glm::mat2x4(d.y, d.z, d.z, d.x, d.x, d.y, 0, 0);
 }
 
-void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+void PathTracer::Impl::pixel(Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                              RayCounts& rays) const {
     const PictureSettings& s = context.settings;
+    Picture& picture = work.picture;
     const size_t at = size_t(y) * s.width + x;
-    glm::dvec4 sum(0);
-    glm::dvec3 unlit(0);  // of it, what a display shows as it is
     const uint32_t sample_bits = PixelSample::bits_for(s.spp);
-    for (uint32_t sample = 0; sample < s.spp; sample++) {
+    for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
         Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
         Shader shader(context, {sample, sample_bits, s.seed});
         const Meeting meeting = shader.hit(path);
         const OracleHit& hit = meeting.hit;
         const glm::dvec3 radiance = shader.radiance(path, meeting);
-        // One bad number must not poison a pixel.
-        bool usable = true;
-        for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
-        sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
-        if (usable) unlit += shader.unlit();
+        work.sums.add(at, sample, radiance, shader.unlit(), hit.hit());
         if (s.aovs && sample == 0 && hit.hit()) {
             const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
             aovs(picture, at, path, first, context.box);
@@ -228,22 +236,19 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         }
         rays += shader.rays();
     }
-    sum /= double(s.spp);
-    picture.radiance[at] = glm::vec4(sum);
-    unlit /= double(s.spp);
-    picture.encoded[at] = encode(glm::dvec3(sum) - unlit, s.exposure, s.tonemap, unlit);
 }
 
 /// One thread's share: tiles until there are none left.
-RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
+RayCounts PathTracer::Impl::work(Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                                  const std::function<void(double)>& progress) const {
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
         const uint32_t left = tile % tiles.columns * tile_size, top = tile / tiles.columns * tile_size;
+        const uint32_t width = context.settings.width, height = context.settings.height;
         // Reports come once per row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
-        for (uint32_t row = 0; row < std::min(tile_size, picture.height - top) && !tiles.stop; row++) {
-            for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
-                pixel(picture, context, views, x, top + row, rays);
+        for (uint32_t row = 0; row < std::min(tile_size, height - top) && !tiles.stop; row++) {
+            for (uint32_t x = left; x < std::min(left + tile_size, width); x++)
+                pixel(work, context, views, x, top + row, rays);
             if (progress) progress((tile + row / double(tile_size)) / tiles.count());
         }
     }
@@ -280,6 +285,8 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->has_blended};
     Picture picture;
     prepare(picture, settings);
+    SampleSums sums(settings, impl_->has_unlit);
+    Work work{picture, sums, 0, settings.spp};
     Tiles tiles(settings);
     std::mutex mutex;
     std::exception_ptr failure;
@@ -293,7 +300,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
         }
     };
     const auto share = [&](const std::function<void(double)>& report) {
-        const RayCounts rays = impl_->work(picture, context, views, tiles, report);
+        const RayCounts rays = impl_->work(work, context, views, tiles, report);
         const std::lock_guard lock(mutex);
         picture.rays += rays;
     };
@@ -317,6 +324,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
     }
     for (std::thread& other : others) other.join();
     if (failure) std::rethrow_exception(failure);
+    sums.store(picture, settings.spp);
     return picture;
 }
 

@@ -22,12 +22,13 @@ void PictureOutput::prepare(const PictureSettings& settings, bool unlit) {
     ensure_size(device_, encoded_, "encoded picture", pixels_of(settings) * 4);
     has_unlit_ = unlit;
     if (unlit) ensure_size(device_, unlit_, "unlit colours", pixels_of(settings) * sizeof(glm::vec3));
+    if (settings.moments) ensure_size(device_, moments_, "moments", pixels_of(settings) * sizeof(glm::vec2));
 }
 
 void PictureOutput::record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame,
                                         const LevelParams& p, const PictureSettings& settings) {
     const bool last = p.sample_index + 1 == settings.spp;
-    commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}}),
+    commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}, {"has_moments", settings.moments}}),
                  {{"frame", frame},
                   {"nodes", queues.level(0).nodes},
                   {"branches", queues.level(0).branches},
@@ -36,8 +37,9 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                   {"queue", queues.counters()},
                   {"picture", picture_},
                   {"encoded", encoded_},
-                  unlit()},
-                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, last,
+                  unlit(),
+                  Binding::if_used("moments", settings.moments ? &moments_ : nullptr)},
+                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index,
                                   last && post_passes_.empty(), scale_of(settings), 1 / float(settings.spp),
                                   uint32_t(settings.tonemap)},
                  groups_for(p.capacity, 64));
@@ -45,11 +47,14 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
 
 bool PictureOutput::record_post(Commands& commands, const PictureSettings& settings) {
     if (post_passes_.empty()) return false;
-    for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
     const uint64_t pixels = pixels_of(settings);
+    if (has_unlit_)
+        commands.run(device_.pass("unlit_share"), {{"picture", picture_}, {"unlit", unlit_}}, uint32_t(pixels),
+                     groups_for(pixels, 64));
+    for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
     commands.run(
         device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
-        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap)},
+        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap), true},
         groups_for(pixels, 64));
     return true;
 }
@@ -60,6 +65,10 @@ void PictureOutput::download(Commands& commands, const PictureSettings& settings
     out.radiance = commands.download<glm::vec4>(picture_, pixels_of(settings));
     for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
     out.encoded = commands.download<uint32_t>(encoded_, pixels_of(settings));
+    if (!settings.moments) return;
+    for (const glm::vec2& moments : commands.download<glm::vec2>(moments_, pixels_of(settings)))
+        out.aovs.variance.push_back(variance_of_mean(moments.y, settings.spp));
+    out.aovs.sample_count.assign(pixels_of(settings), float(settings.spp));
 }
 
 }  // namespace peelray

@@ -31,7 +31,12 @@ class PictureOutput {
     bool record_post(Commands& commands, const PictureSettings& settings);
     void download(Commands& commands, const PictureSettings& settings, Picture& out) const;
 
-    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes() + unlit_.bytes(); }
+    /// With PictureSettings::moments: vec2 of each pixel, row by row: the mean of its samples' luminances (Rec. 709,
+    /// before exposure) and the sum of their squared deviations from it. So that, divided by n(n - 1), is the variance
+    /// of the mean of n samples.
+    const Buffer& moments() const { return moments_; }
+
+    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes() + unlit_.bytes() + moments_.bytes(); }
 
   private:
     Device& device_;
@@ -40,7 +45,8 @@ class PictureOutput {
     Binding unlit() const { return Binding::if_used("unlit", has_unlit_ ? &unlit_ : nullptr); }
 
     Buffer picture_, encoded_;
-    Buffer unlit_;  ///< vec3 of each pixel: what it sees of unlit surfaces, in the end its share
+    Buffer unlit_;    ///< vec3 of each pixel: what it sees of unlit surfaces; for post passes its share of the picture
+    Buffer moments_;  ///< see moments()
     bool has_unlit_ = false;
 };
 

@@ -37,6 +37,7 @@ struct PictureSettings {
     bool aovs = false;       ///< also the auxiliary pictures
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
     bool motion = false;     ///< and Aovs::motion, which else is 0
+    bool moments = false;    ///< also those of SAMPLE_AOVS, whether there are others or not
     Camera camera_before;    ///< for `motion`: where the camera was at the moment before
     /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
     /// reference needs what is generated placed in it (Simulation).
@@ -48,6 +49,8 @@ struct Aovs {
 #define AOV_PICTURE(name, type, channels, nothing) std::vector<type> name;
     SURFACE_AOVS(AOV_PICTURE)
     RAY_SETUP_AOVS(AOV_PICTURE)
+    /// Of all samples, not only of that at the centre; with PictureSettings::moments alone.
+    SAMPLE_AOVS(AOV_PICTURE)
 #undef AOV_PICTURE
     /// Where it was counted: what all rays of a pixel cost, of all samples.
     std::vector<RayCosts> costs;
@@ -82,6 +85,12 @@ struct Picture {
     Aovs aovs;
     RayCounts rays;
 };
+
+/// Of the mean of `samples` values, estimated from the sum of their squared deviations from that mean (Bessel's
+/// correction); of a single one 0, for nothing is known.
+inline float variance_of_mean(double squared_deviations, uint32_t samples) {
+    return samples < 2 ? 0 : float(squared_deviations / (double(samples) * (samples - 1)));
+}
 
 /// Do samples of rough lobes, rather than their means, make the picture?
 inline bool is_sampled(const PictureSettings& settings) {
