@@ -43,7 +43,9 @@ void main() {
     const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
-    const vec3 added = finite ? radiance : vec3(0);
+    const float largest = max(radiance.r, max(radiance.g, radiance.b));
+    const float kept = largest > params.limit ? params.limit / largest : 1.0;
+    const vec3 added = finite ? radiance * kept : vec3(0);
     vec4 sum = vec4(added, (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
@@ -51,7 +53,7 @@ void main() {
     vec3 shown = vec3(0);
     if (has_unlit) {
         // Not what is seen through it.
-        if (finite && (node.flags & NODE_UNLIT) != 0u) shown = node.radiance;
+        if (finite && (node.flags & NODE_UNLIT) != 0u) shown = node.radiance * kept;
         if (params.sample_index > 0u) shown += unlit[at];
         unlit[at] = shown;
     }

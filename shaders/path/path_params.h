@@ -100,8 +100,9 @@ struct AccumulateParams {
     float scale;   ///< exposure / samples
     float share;   ///< 1 / samples
     uint curve;    ///< 0 none, 1 ACES, 2 neutral
+    float limit;   ///< to the largest channel of a sample
 };
-SHARED_SIZE(AccumulateParams, 36);
+SHARED_SIZE(AccumulateParams, 40);
 
 struct EncodeParams {
     uint pixels;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "settings/aovs.h"
 
 namespace peelray {
@@ -20,7 +21,9 @@ RenderSettings render_settings(const RenderArguments& a) {
     };
     settings.ray_setup = any_from(AovSource::ray_setup);
     settings.aovs = settings.ray_setup || any_from(AovSource::surface);
-    settings.moments = any_from(AovSource::samples);
+    settings.time_limit = a.time_limit;
+    settings.noise_target = a.noise_target;
+    settings.moments = any_from(AovSource::samples) || a.noise_target;
     settings.motion = wants(a, Aov::motion);
     return settings;
 }
@@ -29,9 +32,19 @@ bool wants(const RenderArguments& a, Aov aov) {
     return std::find(a.aovs.begin(), a.aovs.end(), aov) != a.aovs.end();
 }
 
-MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot) {
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot,
+                            PictureWatch watch) {
     Progress bar(settings.tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
-    return workspace.render(settings, shot, [&](double share) { bar.update(share); });
+    watch.progress = [&](double share) { bar.update(share); };
+    return workspace.render(settings, shot, watch);
+}
+
+void check_ends(const RenderArguments& a) {
+    if (a.noise_target && a.spp < kLeastSamplesForNoise)
+        fail(
+            "of {} noise cannot be told, so --noise-target would end nothing: let --spp, the most there may be, be {} "
+            "or more",
+            counted("{} sample{|s}", a.spp), kLeastSamplesForNoise);
 }
 
 void check_counters(const RenderArguments& a) {

@@ -93,13 +93,8 @@ struct Views {
     std::optional<Before> before;
 };
 
-void prepare(Picture& picture, const PictureSettings& s) {
+void prepare_aovs(Picture& picture, const PictureSettings& s) {
     const size_t pixels = size_t(s.width) * s.height;
-    picture.width = s.width;
-    picture.height = s.height;
-    picture.radiance.resize(pixels);
-    picture.encoded.resize(pixels);
-    picture.rays.primary = uint64_t(pixels) * s.spp;
     if (!s.aovs) return;
 #define AOV_NOTHING(name, type, channels, nothing) picture.aovs.name.assign(pixels, type(nothing));
     SURFACE_AOVS(AOV_NOTHING)
@@ -175,10 +170,12 @@ struct PathTracer::Impl {
     /// Numbers as Geometry::objects does.
     uint32_t object_of(uint32_t triangle) const;
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
-    void pixel(Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+    void pixel(const Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                RayCounts& rays) const;
-    RayCounts work(Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
+    RayCounts work(const Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                    const std::function<void(double)>& progress) const;
+    void pass(const Work& work, const RenderContext& context, const Views& views,
+              const std::function<void(double)>& progress, unsigned threads) const;
 };
 
 Views PathTracer::Impl::views(const PictureSettings& s, const Box& box) const {
@@ -215,7 +212,7 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.directions[at] = glm::mat2x4(d.y, d.z, d.z, d.x, d.x, d.y, 0, 0);
 }
 
-void PathTracer::Impl::pixel(Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+void PathTracer::Impl::pixel(const Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                              RayCounts& rays) const {
     const PictureSettings& s = context.settings;
     Picture& picture = work.picture;
@@ -239,7 +236,7 @@ void PathTracer::Impl::pixel(Work& work, const RenderContext& context, const Vie
 }
 
 /// One thread's share: tiles until there are none left.
-RayCounts PathTracer::Impl::work(Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
+RayCounts PathTracer::Impl::work(const Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                                  const std::function<void(double)>& progress) const {
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
@@ -255,6 +252,48 @@ RayCounts PathTracer::Impl::work(Work& work, const RenderContext& context, const
     return rays;
 }
 
+/// All tiles on all cores, or on `threads` of them.
+void PathTracer::Impl::pass(const Work& work, const RenderContext& context, const Views& views,
+                            const std::function<void(double)>& progress, unsigned threads) const {
+    Tiles tiles(context.settings);
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto guarded = [&](const auto& body) {
+        try {
+            body();
+        } catch (...) {
+            tiles.stop = true;
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    const auto share = [&](const std::function<void(double)>& report) {
+        const RayCounts rays = this->work(work, context, views, tiles, report);
+        const std::lock_guard lock(mutex);
+        work.picture.rays += rays;
+    };
+    std::vector<std::thread> others;
+    std::atomic<unsigned> done{0};
+    const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+    try {
+        for (unsigned i = 1; i < cores; i++)
+            others.emplace_back([&] {
+                guarded([&] { share(nullptr); });
+                done++;
+            });
+    } catch (const std::system_error&) {
+        // No more threads can be started: those that run do the work.
+    }
+    guarded([&] { share(progress); });
+    // The others' last tiles may take long: whoever listens for interrupts goes on listening.
+    while (progress && !tiles.stop && done < others.size()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        guarded([&] { progress(1); });
+    }
+    for (std::thread& other : others) other.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
 PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry,
                        const Environment& environment, std::span<const Emitter> emitters)
     : impl_(std::make_unique<Impl>(scene, moment, geometry, environment, emitters)) {}
@@ -265,8 +304,7 @@ std::string PathTracer::version() {
     return "Embree " RTC_VERSION_STRING;
 }
 
-Picture PathTracer::render(const PictureSettings& settings, const std::function<void(double)>& progress,
-                           unsigned threads) const {
+Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const {
     check_settings(settings);
     assert(settings.env_mode != EnvironmentMode::sampled || !impl_->environment.distribution.quads.empty());
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
@@ -284,47 +322,23 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->media_around(settings.camera),
                                 impl_->has_blended};
     Picture picture;
-    prepare(picture, settings);
+    prepare_aovs(picture, settings);
     SampleSums sums(settings, impl_->has_unlit);
-    Work work{picture, sums, 0, settings.spp};
-    Tiles tiles(settings);
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto guarded = [&](const auto& body) {
-        try {
-            body();
-        } catch (...) {
-            tiles.stop = true;
-            const std::lock_guard lock(mutex);
-            failure = std::current_exception();
-        }
+    Passes passes(settings, watch);
+    std::function<void(double)> progress;
+    if (watch.progress) progress = [&](double of_pass) { watch.progress(passes.share(of_pass)); };
+    const auto look = [&] {
+        Picture so_far;
+        sums.store(so_far, passes.done());
+        return so_far;
     };
-    const auto share = [&](const std::function<void(double)>& report) {
-        const RayCounts rays = impl_->work(work, context, views, tiles, report);
-        const std::lock_guard lock(mutex);
-        picture.rays += rays;
-    };
-    std::vector<std::thread> others;
-    std::atomic<unsigned> done{0};
-    const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
-    try {
-        for (unsigned i = 1; i < cores; i++)
-            others.emplace_back([&] {
-                guarded([&] { share(nullptr); });
-                done++;
-            });
-    } catch (const std::system_error&) {
-        // No more threads can be started: those that run do the work.
+    while (passes.next() > 0) {
+        impl_->pass({picture, sums, passes.done(), passes.end_of_pass()}, context, views, progress, threads);
+        passes.finish([&] { return sums.noise(passes.done()); }, look);
     }
-    guarded([&] { share(progress); });
-    // The others' last tiles may take long: whoever listens for interrupts goes on listening.
-    while (progress && !tiles.stop && done < others.size()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        guarded([&] { progress(1); });
-    }
-    for (std::thread& other : others) other.join();
-    if (failure) std::rethrow_exception(failure);
-    sums.store(picture, settings.spp);
+    sums.store(picture, passes.done());
+    picture.samples = passes.made();
+    picture.rays.primary = uint64_t(settings.width) * settings.height * picture.samples.count;
     return picture;
 }
 
