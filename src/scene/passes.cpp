@@ -37,6 +37,7 @@ uint32_t Passes::next() {
     if (ended_) return 0;
     running_ = settings_.spp - made_.count;
     pass_start_ = Clock::now();
+    if (made_.count == 0) start_ = pass_start_;
     if (!several_) return running_;
     if (made_.count == 0) return running_ = 1;
     double time = kPassSeconds;
@@ -73,7 +74,9 @@ bool Passes::ends() {
 
 double Passes::share(double of_pass) const {
     const double samples = (made_.count + of_pass * running_) / settings_.spp;
-    return settings_.time_limit ? std::min(1.0, std::max(samples, seconds() / *settings_.time_limit)) : samples;
+    return settings_.time_limit && end_of_pass() > 0
+               ? std::min(1.0, std::max(samples, seconds() / *settings_.time_limit))
+               : samples;
 }
 
 float noise_of(std::span<const PixelMoments> pixels) {

@@ -55,8 +55,8 @@ class Passes {
     const PictureSettings& settings_;
     const PictureWatch& watch_;
     bool several_;
-    Clock::time_point start_ = Clock::now(), pass_start_ = start_;
-    double busy_ = 0;  ///< seconds that the passes took
+    Clock::time_point start_{}, pass_start_{};  ///< of the first pass and of the one that runs
+    double busy_ = 0;                           ///< seconds that the passes took
     uint32_t running_ = 0;
     bool ended_ = false;
     SamplesMade made_;
