@@ -5,7 +5,8 @@
 #include "path/frame.h"
 #include "path/path_params.h"
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool has_unlit = false;  // the scene has unlit materials
+layout(constant_id = 0) const bool has_unlit = false;    // the scene has unlit materials
+layout(constant_id = 1) const bool has_moments = false;  // of the samples' luminances are asked for
 PARAMS(AccumulateParams)
 BUFFER(readonly, 0, Frame, frame)
 BUFFER(readonly, 1, PathNode, nodes)
@@ -16,18 +17,20 @@ BUFFER(readonly, 5, uint, queue)
 BUFFER(, 6, vec4, picture)
 BUFFER(writeonly, 7, uint, encoded)
 BUFFER(, 8, vec3, unlit)
+BUFFER(, 9, vec2, moments)  // mean of the luminances, sum of their squared deviations from it
 #include "view/camera.glsl"
 #include "path/gather.glsl"
 #include "path/shading.glsl"
 #include "path/encode.glsl"
 
-/// Adds to what the pixel sees of unlit surfaces; after the last sample its share of the `sum`, which stays right where post
-/// passes change the picture.
-vec3 unlitShare(uint at, vec3 radiance, vec3 sum) {
-    if (params.sample_index > 0u) radiance += unlit[at];
-    if (params.last != 0u) radiance = mix(radiance / max(sum, vec3(1e-30)), vec3(0), lessThanEqual(sum, vec3(0)));
-    unlit[at] = radiance;
-    return radiance;
+/// Adds a sample to the pixel's moments (Welford 1962): without the difference of large sums, which single precision would lose.
+void addToMoments(uint at, vec3 radiance) {
+    const float luminance = dot(radiance, vec3(LUMINANCE_RED, LUMINANCE_GREEN, LUMINANCE_BLUE));
+    vec2 sums = params.sample_index > 0u ? moments[at] : vec2(0);
+    const float before = luminance - sums.x;
+    sums.x += before / float(params.sample_index + 1u);
+    sums.y += before * (luminance - sums.x);
+    moments[at] = sums;
 }
 
 void main() {
@@ -40,11 +43,19 @@ void main() {
     const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
-    vec4 sum = vec4(finite ? radiance : vec3(0), (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
+    const float largest = max(radiance.r, max(radiance.g, radiance.b));
+    const float kept = largest > params.limit ? params.limit / largest : 1.0;
+    const vec3 added = finite ? radiance * kept : vec3(0);
+    vec4 sum = vec4(added, (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
+    if (has_moments) addToMoments(at, added);
     vec3 shown = vec3(0);
-    // Not what is seen through it.
-    if (has_unlit) shown = unlitShare(at, finite && (node.flags & NODE_UNLIT) != 0u ? node.radiance : vec3(0), sum.rgb);
-    if (params.encodes != 0u) encoded[at] = encode(sum.rgb, shown, params.scale, params.share, params.curve);
+    if (has_unlit) {
+        // Not what is seen through it.
+        if (finite && (node.flags & NODE_UNLIT) != 0u) shown = node.radiance * kept;
+        if (params.sample_index > 0u) shown += unlit[at];
+        unlit[at] = shown;
+    }
+    if (params.encodes != 0u) encoded[at] = encode(sum.rgb, has_unlit ? unlitShare(shown, sum.rgb) : shown, params.scale, params.share, params.curve);
 }

@@ -1,7 +1,7 @@
 // The auxiliary pictures, a line each: AOV(name, type, channels, nothing). Names, files, help and the records that
 // shaders write follow from here; what is left to do is to set the value in the one place that is named.
 //   type      of a pixel's value, in shaders and on the host: float, vec4, ...
-//   channels  of the file: distance, index, vector, color, motion, directions, cost (src/cli/picture_files.cpp)
+//   channels  of the file: distance, index, scalar, vector, color, motion, directions, cost (src/cli/picture_files.cpp)
 //   nothing   the value where the camera sees nothing
 #ifndef PEELRAY_AOV_TABLE_H
 #define PEELRAY_AOV_TABLE_H
@@ -37,6 +37,14 @@
     AOV(reflection, vec4, vector, 0) \
     AOV(box, vec4, vector, 0)        \
     AOV(directions, mat2x4, directions, 0)
+
+// What a pixel's samples are like, made only where it is asked for: set in src/render/picture_output.cpp from what
+// accumulate.comp adds up, and in src/reference/sample_sums.cpp.
+//   variance      of the mean of the samples' luminances: how far the picture may be from what it converges to, squared
+//   sample_count  how many samples there are
+#define SAMPLE_AOVS(AOV)       \
+    AOV(variance, float, scalar, 0) \
+    AOV(sample_count, float, scalar, 0)
 
 // What all rays of a pixel cost, of all samples: the fields of RayCosts, counted by counting.glsl. These are last.
 #define COST_AOVS(AOV)               \

@@ -96,11 +96,11 @@ struct AccumulateParams {
     uint light_capacity;  ///< room in the queue of shadow rays
     uint first_row;       ///< of the band, a multiple of 8
     uint sample_index;
-    uint last;     ///< 1: the last sample
-    uint encodes;  ///< 1: after it the picture is encoded
+    uint encodes;  ///< 1: the last sample, after which the picture is encoded
     float scale;   ///< exposure / samples
     float share;   ///< 1 / samples
     uint curve;    ///< 0 none, 1 ACES, 2 neutral
+    float limit;   ///< to the largest channel of a sample
 };
 SHARED_SIZE(AccumulateParams, 40);
 
@@ -109,8 +109,9 @@ struct EncodeParams {
     float scale;  ///< exposure / samples
     float share;  ///< 1 / samples
     uint curve;   ///< 0 none, 1 ACES, 2 neutral
+    uint shares;  ///< 1: of unlit colours there are shares, 0: sums
 };
-SHARED_SIZE(EncodeParams, 16);
+SHARED_SIZE(EncodeParams, 20);
 
 /// Parameters of the ray_setup passes: the box of the scene.
 struct RaySetupParams {

@@ -3,6 +3,11 @@
 #ifndef PEELRAY_SHADING_NUMBERS_H
 #define PEELRAY_SHADING_NUMBERS_H
 
+// Luminance of linear Rec. 709, by channel.
+#define LUMINANCE_RED 0.2126
+#define LUMINANCE_GREEN 0.7152
+#define LUMINANCE_BLUE 0.0722
+
 // Perceptual roughness below which a surface is a mirror: punctual lights leave no highlight, rays see the sun's disc.
 #define MIRROR_ROUGHNESS 0.05
 // With several samples per pixel the reflection of an opaque surface is traced below this roughness, or where it is

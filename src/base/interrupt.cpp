@@ -20,6 +20,10 @@ void watch_interrupts() {
         if (std::signal(number, remember) == SIG_IGN) std::signal(number, SIG_IGN);
 }
 
+bool was_interrupted() {
+    return interrupted != 0;
+}
+
 void check_interrupt() {
     if (interrupted) throw Interrupted("interrupted: nothing was written; run it again");
 }

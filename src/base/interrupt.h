@@ -14,6 +14,9 @@ class Interrupted : public Error {
 /// From now on the first SIGINT or SIGTERM is remembered instead of ending the process; a second one ends it at once.
 void watch_interrupts();
 
+/// Did a signal come since watch_interrupts()?
+bool was_interrupted();
+
 /// Throws Interrupted if a signal came since watch_interrupts(). Long work calls it between its steps.
 void check_interrupt();
 

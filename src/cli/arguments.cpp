@@ -55,6 +55,43 @@ std::string name_of(const std::optional<HitTest>& hit) {
 
 // ---- render
 
+namespace {
+
+/// How a picture of many samples ends early, and is looked at before.
+void add_progress(SettingList& list, RenderArguments& a) {
+    const std::string group = "Progress";
+    add_setting(list, a.time_limit,
+                {.name = "time-limit",
+                 .group = group,
+                 .help = "the picture, or each frame, ends with the samples that it has when this many seconds have "
+                         "passed since its first sample was begun, at least one; --spp is still the most",
+                 .form = "SECONDS",
+                 .limits = kTimeLimits,
+                 .excludes = {"repeat"}});
+    add_setting(list, a.noise_target,
+                {.name = "noise-target",
+                 .group = group,
+                 .help = "the picture, or each frame, ends when its noise is below X: in 95 of 100 pixels that see a "
+                         "surface the standard error is below X times the pixel's luminance (and a hundredth of the "
+                         "picture's); looked at from 8 samples on; --spp is still the most",
+                 .limits = kNoiseLimits,
+                 .excludes = {"repeat"}});
+    add_file(list, a.preview,
+             {.name = "preview",
+              .group = group,
+              .help = "while it works, write here what the picture looks like so far, every second at most; in the end "
+                      "it shows the finished picture",
+              .excludes = {"repeat", "frames", "turntable"}});
+    add_setting(list, a.keep_partial,
+                {.name = "keep-partial",
+                 .group = group,
+                 .help = "Ctrl-C ends the picture with the samples that it has; without, nothing is written then",
+                 .changes_picture = false,
+                 .excludes = {"repeat", "frames", "turntable"}});
+}
+
+}  // namespace
+
 SettingList options_of(RenderArguments& a) {
     SettingList list;
     add_file(list, a.output,
@@ -65,6 +102,7 @@ SettingList options_of(RenderArguments& a) {
               .required = true});
     append(list, picture_settings(a));
     append(list, sequence_settings(a.sequence));
+    add_progress(list, a);
     const std::string group = "More output";
     add_setting(list, a.aovs,
                 {.name = "aov",
@@ -73,6 +111,9 @@ SettingList options_of(RenderArguments& a) {
                          print_text(aovs_of(AovSource::surface)) + ", or all of them; or out of " +
                          print_text(aovs_of(AovSource::ray_setup)) +
                          ": what the paper sets up for mirror rays (its Figure 7); or out of " +
+                         print_text(aovs_of(AovSource::samples)) +
+                         ": the squared error that the mean of a pixel's samples has to be expected to have, and how "
+                         "many there are; or out of " +
                          print_text(aovs_of(AovSource::costs)) +
                          ": what all rays of a pixel cost in the cubes, with a heat map NAME.KIND.png",
                  .form = "LIST",

@@ -12,10 +12,13 @@
 namespace peelray {
 
 struct RenderArguments : PictureArguments {
-    std::filesystem::path output, stats;
+    std::filesystem::path output, stats, preview;
     std::vector<Aov> aovs;
     bool exr_layers = false;
     bool counters = false;
+    std::optional<double> time_limit;  ///< seconds
+    std::optional<float> noise_target;
+    bool keep_partial = false;
     SequenceArguments sequence;
 
     bool is_sequence() const { return sequence.frames || sequence.turntable; }

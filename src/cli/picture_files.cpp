@@ -63,6 +63,9 @@ Channels distance(Aov aov) {
 Channels index(Aov aov) {
     return number(aov, name_of(aov));
 }
+Channels scalar(Aov aov) {
+    return number(aov, name_of(aov));
+}
 Channels vector(Aov aov) {
     return named(aov, {"X", "Y", "Z"});
 }
@@ -114,6 +117,7 @@ void add_aov(Planes& planes, const Picture& picture, Aov aov, bool layered) {
     if (aov == Aov::name) return add(channels::kind(aov), picture.aovs.name);
     SURFACE_AOVS(AOV_ADD)
     RAY_SETUP_AOVS(AOV_ADD)
+    SAMPLE_AOVS(AOV_ADD)
 #undef AOV_ADD
 }
 

@@ -8,6 +8,7 @@
 #include "cli/messages.h"
 #include "cli/outputs.h"
 #include "cli/picture_files.h"
+#include "cli/preview.h"
 #include "cli/render_plan.h"
 #include "cli/sequence.h"
 #include "cli/stats_json.h"
@@ -37,12 +38,20 @@ std::string summary_of(const PictureStats& stats) {
     return text;
 }
 
+/// How many, where it ended early.
+std::string samples_of(const RenderArguments& a, const SamplesMade& samples) {
+    if (samples.end == PictureEnd::samples) return {};
+    std::string text = fmt::format("{} of {} samples ({}", samples.count, a.spp, name_of(samples.end));
+    if (samples.noise && a.noise_target) text += fmt::format(", noise {:.3g}", *samples.noise);
+    return text + "), ";
+}
+
 /// What a reader of the terminal wants to know, once.
 void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
     const Picture& picture = made.picture;
     const uint64_t rays = picture.rays.primary + picture.rays.secondary();
-    fmt::print("{}: {}x{}, {}, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width, picture.height,
-               counted("{} triangle{|s}", triangles),
+    fmt::print("{}: {}x{}, {}{}, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width, picture.height,
+               samples_of(a, picture.samples), counted("{} triangle{|s}", triangles),
                rays < 100'000 ? counted("{} ray{|s}", rays) : fmt::format("{:.1f} M rays", double(rays) * 1e-6),
                summary_of(made.stats), seconds, made.stats.machine.name);
 }
@@ -55,26 +64,38 @@ void run_render(const RenderArguments& a) {
     check(a);
     check_single(a);
     check_counters(a);
+    check_ends(a);
     check_picture_name(a.output, a.exr_layers);
+    if (!a.preview.empty()) check_picture_name(a.preview, false);
     if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
     const RenderSettings settings = render_settings(a);
     std::vector<fs::path> outputs = {a.output};
     for (const fs::path& path : paths_beside(a.output, a.aovs, a.exr_layers)) outputs.push_back(path);
-    if (!a.stats.empty()) outputs.push_back(a.stats);
+    for (const fs::path& path : {a.stats, a.preview})
+        if (!path.empty()) outputs.push_back(path);
     check_outputs(outputs, {a.scene, a.env});
 
     Workspace workspace(a, print_note);
     watch_interrupts();
     Shot shot;
     shot.fps = a.sequence.fps.value_or(kUsualFps);
-    const MadePicture made = render_with_bar(workspace, settings, shot);
+    Preview preview(a.preview);
+    PictureWatch watch;
+    if (preview) watch.pass_ended = [&](const std::function<Picture()>& look) { preview.update(look); };
+    if (a.keep_partial) watch.stop = was_interrupted;
+    const MadePicture made = render_with_bar(workspace, settings, shot, watch);
     write_picture(made.picture, a.aovs, a.exr_layers, a.output);
     for (const Aov aov : a.aovs)
         if (const RayCostField* field = cost_field(aov))
             print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, aov).string(),
                                    largest_of(made.picture.aovs.costs, *field)));
+    preview.finish(made.picture);
     if (!a.stats.empty()) write_json(a.stats, picture_json(made.stats));
+    const SamplesMade& samples = made.picture.samples;
+    if (samples.end == PictureEnd::interrupt)
+        throw Interrupted(fmt::format("interrupted after {} of {}: {} shows the mean of those", samples.count,
+                                      counted("{} sample{|s}", a.spp), a.output.string()));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(a, made, workspace.scene().triangles(), seconds);
 }

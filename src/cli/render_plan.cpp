@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "settings/aovs.h"
 
 namespace peelray {
@@ -15,8 +16,14 @@ static bool wants_costs(const RenderArguments& a) {
 RenderSettings render_settings(const RenderArguments& a) {
     RenderSettings settings = render_settings(static_cast<const PictureArguments&>(a));
     settings.counters = a.counters || wants_costs(a);
-    settings.aovs = std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return !cost_field(aov); });
-    settings.ray_setup = std::any_of(a.aovs.begin(), a.aovs.end(), is_ray_setup);
+    const auto any_from = [&](AovSource source) {
+        return std::any_of(a.aovs.begin(), a.aovs.end(), [&](Aov aov) { return is_from(source, aov); });
+    };
+    settings.ray_setup = any_from(AovSource::ray_setup);
+    settings.aovs = settings.ray_setup || any_from(AovSource::surface);
+    settings.time_limit = a.time_limit;
+    settings.noise_target = a.noise_target;
+    settings.moments = any_from(AovSource::samples) || a.noise_target;
     settings.motion = wants(a, Aov::motion);
     return settings;
 }
@@ -25,9 +32,19 @@ bool wants(const RenderArguments& a, Aov aov) {
     return std::find(a.aovs.begin(), a.aovs.end(), aov) != a.aovs.end();
 }
 
-MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot) {
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot,
+                            PictureWatch watch) {
     Progress bar(settings.tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
-    return workspace.render(settings, shot, [&](double share) { bar.update(share); });
+    watch.progress = [&](double share) { bar.update(share); };
+    return workspace.render(settings, shot, watch);
+}
+
+void check_ends(const RenderArguments& a) {
+    if (a.noise_target && a.spp < kLeastSamplesForNoise)
+        fail(
+            "of {} noise cannot be told, so --noise-target would end nothing: let --spp, the most there may be, be {} "
+            "or more",
+            counted("{} sample{|s}", a.spp), kLeastSamplesForNoise);
 }
 
 void check_counters(const RenderArguments& a) {

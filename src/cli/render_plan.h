@@ -11,9 +11,12 @@ namespace peelray {
 RenderSettings render_settings(const RenderArguments& arguments);
 /// Throws Error where what is to be counted cannot be or goes nowhere.
 void check_counters(const RenderArguments& arguments);
+/// Throws Error where what ends a picture early cannot.
+void check_ends(const RenderArguments& arguments);
 /// Is the auxiliary picture among those to be written?
 bool wants(const RenderArguments& arguments, Aov aov);
-/// A picture with a progress bar of its own.
-MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot = {});
+/// A picture with a progress bar of its own, which is the progress of `watch`.
+MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot = {},
+                            PictureWatch watch = {});
 
 }  // namespace peelray

@@ -270,6 +270,7 @@ void render_video(const RenderArguments& a, const Sequence& sequence) {
 void run_sequence(const RenderArguments& a) {
     check(a);
     check_counters(a);
+    check_ends(a);
     const Sequence sequence = plan_sequence(a);
     if (is_video(a.output)) return render_video(a, sequence);
     if (sequence.numbers().empty()) {

@@ -208,6 +208,13 @@ static Json rates_json(const PictureStats& stats) {
             {"shadow_and_ambient", rate(rays.shadow + rays.ambient, shadow_ms)}};
 }
 
+/// Of each pixel: how many, why no more, and how noisy they leave the picture, where that is known.
+static Json samples_json(const SamplesMade& samples) {
+    return {{"count", samples.count},
+            {"end", name_of(samples.end)},
+            {"noise", samples.noise ? Json(*samples.noise) : Json(nullptr)}};
+}
+
 /// What only a device's picture has.
 static void add_render_json(Json& json, const PictureStats& stats) {
     const RenderStats& s = stats.render;
@@ -233,6 +240,7 @@ Json picture_json(const PictureStats& stats) {
     Json json = {{"tracer", name_of(s.tracer)}};
     json.update(machine_json(stats.machine));
     json["image"] = {stats.width, stats.height};
+    json["samples"] = samples_json(stats.samples);
     json["triangles"] = stats.triangles;
     json["timed"] = s.timed;
     json["frame_ms"] = s.frame_ms;

@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/infinity.h"
 #include "reference/optics.h"
+#include "reference/sample_sums.h"
 #include "reference/shader.h"
-#include "scene/encoding.h"
 #include "settings/limits.h"
 
 namespace peelray {
@@ -93,19 +93,27 @@ struct Views {
     std::optional<Before> before;
 };
 
-void prepare(Picture& picture, const PictureSettings& s) {
+void prepare_aovs(Picture& picture, const PictureSettings& s) {
     const size_t pixels = size_t(s.width) * s.height;
-    picture.width = s.width;
-    picture.height = s.height;
-    picture.radiance.resize(pixels);
-    picture.encoded.resize(pixels);
-    picture.rays.primary = uint64_t(pixels) * s.spp;
     if (!s.aovs) return;
 #define AOV_NOTHING(name, type, channels, nothing) picture.aovs.name.assign(pixels, type(nothing));
     SURFACE_AOVS(AOV_NOTHING)
     RAY_SETUP_AOVS(AOV_NOTHING)
 #undef AOV_NOTHING
 }
+
+/// Does any triangle have such a material?
+template <typename Is>
+bool has_material(const Geometry& geometry, Is is) {
+    return std::ranges::any_of(geometry.materials, is);
+}
+
+/// Some samples of each pixel, which are to be added to a picture.
+struct Work {
+    Picture& picture;
+    SampleSums& sums;
+    uint32_t first_sample, end_sample;
+};
 
 }  // namespace
 
@@ -117,7 +125,7 @@ struct PathTracer::Impl {
     Surroundings surroundings;
     Lamps lamps;
     MediaRanks media;
-    bool has_blended;
+    bool has_blended, has_unlit;
     const Scene& scene;
     const Environment& environment;
     EmitterList emitters;
@@ -132,8 +140,8 @@ struct PathTracer::Impl {
           surroundings(environment),
           lamps(lamps_of(moment.lights, environment.lights)),
           media(media_ranks(scene)),
-          has_blended(std::ranges::any_of(geometry.materials,
-                                          [&](uint32_t material) { return scene.materials[material].blended; })),
+          has_blended(has_material(geometry, [&](uint32_t i) { return scene.materials[i].blended; })),
+          has_unlit(has_material(geometry, [&](uint32_t i) { return scene.materials[i].unlit; })),
           scene(scene),
           environment(environment),
           emitters(emitters, geometry.triangles.size()) {
@@ -161,10 +169,12 @@ struct PathTracer::Impl {
     /// Numbers as Geometry::objects does.
     uint32_t object_of(uint32_t triangle) const;
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const OracleHit& hit, const Box& box) const;
-    void pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+    void pixel(const Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                RayCounts& rays) const;
-    RayCounts work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
+    RayCounts work(const Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                    const std::function<void(double)>& progress) const;
+    void pass(const Work& work, const RenderContext& context, const Views& views,
+              const std::function<void(double)>& progress, unsigned threads) const;
 };
 
 Views PathTracer::Impl::views(const PictureSettings& s, const Box& box) const {
@@ -201,25 +211,20 @@ void PathTracer::Impl::aovs(Picture& picture, size_t at, const Shader::Path& pat
     a.directions[at] = glm::mat2x4(d.y, d.z, d.z, d.x, d.x, d.y, 0, 0);
 }
 
-void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
+void PathTracer::Impl::pixel(const Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                              RayCounts& rays) const {
     const PictureSettings& s = context.settings;
+    Picture& picture = work.picture;
     const size_t at = size_t(y) * s.width + x;
-    glm::dvec4 sum(0);
-    glm::dvec3 unlit(0);  // of it, what a display shows as it is
     const uint32_t sample_bits = PixelSample::bits_for(s.spp);
-    for (uint32_t sample = 0; sample < s.spp; sample++) {
+    for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
         Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
         Shader shader(context, {sample, sample_bits, s.seed});
         const Meeting meeting = shader.hit(path);
         const OracleHit& hit = meeting.hit;
         const glm::dvec3 radiance = shader.radiance(path, meeting);
-        // One bad number must not poison a pixel.
-        bool usable = true;
-        for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
-        sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
-        if (usable) unlit += shader.unlit();
+        work.sums.add(at, sample, radiance, shader.unlit(), hit.hit());
         if (s.aovs && sample == 0 && hit.hit()) {
             const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
             aovs(picture, at, path, first, context.box);
@@ -227,26 +232,65 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         }
         rays += shader.rays();
     }
-    sum /= double(s.spp);
-    picture.radiance[at] = glm::vec4(sum);
-    unlit /= double(s.spp);
-    picture.encoded[at] = encode(glm::dvec3(sum) - unlit, s.exposure, s.tonemap, unlit);
 }
 
 /// One thread's share: tiles until there are none left.
-RayCounts PathTracer::Impl::work(Picture& picture, const RenderContext& context, const Views& views, Tiles& tiles,
+RayCounts PathTracer::Impl::work(const Work& work, const RenderContext& context, const Views& views, Tiles& tiles,
                                  const std::function<void(double)>& progress) const {
     RayCounts rays;
     for (uint32_t tile; !tiles.stop && (tile = tiles.next++) < tiles.count();) {
         const uint32_t left = tile % tiles.columns * tile_size, top = tile / tiles.columns * tile_size;
+        const uint32_t width = context.settings.width, height = context.settings.height;
         // Reports come once per row: at thousands of samples per pixel a whole tile would keep an interrupt waiting.
-        for (uint32_t row = 0; row < std::min(tile_size, picture.height - top) && !tiles.stop; row++) {
-            for (uint32_t x = left; x < std::min(left + tile_size, picture.width); x++)
-                pixel(picture, context, views, x, top + row, rays);
+        for (uint32_t row = 0; row < std::min(tile_size, height - top) && !tiles.stop; row++) {
+            for (uint32_t x = left; x < std::min(left + tile_size, width); x++)
+                pixel(work, context, views, x, top + row, rays);
             if (progress) progress((tile + row / double(tile_size)) / tiles.count());
         }
     }
     return rays;
+}
+
+/// All tiles on all cores, or on `threads` of them.
+void PathTracer::Impl::pass(const Work& work, const RenderContext& context, const Views& views,
+                            const std::function<void(double)>& progress, unsigned threads) const {
+    Tiles tiles(context.settings);
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto guarded = [&](const auto& body) {
+        try {
+            body();
+        } catch (...) {
+            tiles.stop = true;
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    const auto share = [&](const std::function<void(double)>& report) {
+        const RayCounts rays = this->work(work, context, views, tiles, report);
+        const std::lock_guard lock(mutex);
+        work.picture.rays += rays;
+    };
+    std::vector<std::thread> others;
+    std::atomic<unsigned> done{0};
+    const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+    try {
+        for (unsigned i = 1; i < cores; i++)
+            others.emplace_back([&] {
+                guarded([&] { share(nullptr); });
+                done++;
+            });
+    } catch (const std::system_error&) {
+        // No more threads can be started: those that run do the work.
+    }
+    guarded([&] { share(progress); });
+    // The others' last tiles may take long: whoever listens for interrupts goes on listening.
+    while (progress && !tiles.stop && done < others.size()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        guarded([&] { progress(1); });
+    }
+    for (std::thread& other : others) other.join();
+    if (failure) std::rethrow_exception(failure);
 }
 
 PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry,
@@ -259,8 +303,7 @@ std::string PathTracer::version() {
     return "Embree " RTC_VERSION_STRING;
 }
 
-Picture PathTracer::render(const PictureSettings& settings, const std::function<void(double)>& progress,
-                           unsigned threads) const {
+Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const {
     check_settings(settings);
     assert(settings.env_mode != EnvironmentMode::sampled || !impl_->environment.distribution.quads.empty());
     const Box box = settings.bounds.value_or(Box{impl_->geometry.lower, impl_->geometry.upper});
@@ -279,44 +322,23 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->media_around(settings.camera),
                                 impl_->has_blended};
     Picture picture;
-    prepare(picture, settings);
-    Tiles tiles(settings);
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto guarded = [&](const auto& body) {
-        try {
-            body();
-        } catch (...) {
-            tiles.stop = true;
-            const std::lock_guard lock(mutex);
-            failure = std::current_exception();
-        }
+    prepare_aovs(picture, settings);
+    SampleSums sums(settings, impl_->has_unlit);
+    Passes passes(settings, watch);
+    std::function<void(double)> progress;
+    if (watch.progress) progress = [&](double of_pass) { watch.progress(passes.share(of_pass)); };
+    const auto look = [&] {
+        Picture so_far;
+        sums.store(so_far, passes.done());
+        return so_far;
     };
-    const auto share = [&](const std::function<void(double)>& report) {
-        const RayCounts rays = impl_->work(picture, context, views, tiles, report);
-        const std::lock_guard lock(mutex);
-        picture.rays += rays;
-    };
-    std::vector<std::thread> others;
-    std::atomic<unsigned> done{0};
-    const unsigned cores = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
-    try {
-        for (unsigned i = 1; i < cores; i++)
-            others.emplace_back([&] {
-                guarded([&] { share(nullptr); });
-                done++;
-            });
-    } catch (const std::system_error&) {
-        // No more threads can be started: those that run do the work.
+    while (passes.next() > 0) {
+        impl_->pass({picture, sums, passes.done(), passes.end_of_pass()}, context, views, progress, threads);
+        passes.finish([&] { return sums.noise(passes.done()); }, look);
     }
-    guarded([&] { share(progress); });
-    // The others' last tiles may take long: whoever listens for interrupts goes on listening.
-    while (progress && !tiles.stop && done < others.size()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        guarded([&] { progress(1); });
-    }
-    for (std::thread& other : others) other.join();
-    if (failure) std::rethrow_exception(failure);
+    sums.store(picture, passes.done());
+    picture.samples = passes.made();
+    picture.rays.primary = uint64_t(settings.width) * settings.height * picture.samples.count;
     return picture;
 }
 

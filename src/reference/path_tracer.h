@@ -1,7 +1,6 @@
 // Ground truth: the frame of docs/frame.md on the CPU, in double precision.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,7 +8,7 @@
 #include "scene/emitters.h"
 #include "scene/environment.h"
 #include "scene/moment.h"
-#include "scene/picture.h"
+#include "scene/passes.h"
 
 namespace peelray {
 
@@ -24,11 +23,10 @@ class PathTracer {
                std::span<const Emitter> emitters = {});
     ~PathTracer();
 
-    /// `threads`: 0 for all cores. The picture does not depend on it. `progress` receives the share done, [0, 1], from
-    /// the calling thread only; if it throws, all threads stop and the exception goes on. EnvironmentMode::sampled
-    /// needs Environment::distribution. Throws Error for impossible settings, naming the option.
-    Picture render(const PictureSettings& settings, const std::function<void(double)>& progress = {},
-                   unsigned threads = 0) const;
+    /// `threads`: 0 for all cores. The picture does not depend on it. Progress receives the share done from the calling
+    /// thread only, as all of `watch` is called; if it throws, all threads stop and the exception goes on.
+    /// EnvironmentMode::sampled needs Environment::distribution. Throws Error for impossible settings, naming the option.
+    Picture render(const PictureSettings& settings, const PictureWatch& watch = {}, unsigned threads = 0) const;
 
     /// "Embree 3.13.5"
     static std::string version();

@@ -1,6 +1,9 @@
 #include "render/picture_output.h"
 
 #include <cmath>
+#include <limits>
+
+#include "scene/passes.h"
 
 namespace peelray {
 namespace {
@@ -16,18 +19,20 @@ float scale_of(const PictureSettings& settings) {
 
 }  // namespace
 
-void PictureOutput::prepare(const PictureSettings& settings, bool unlit) {
+void PictureOutput::prepare(const PictureSettings& settings, bool unlit, bool open) {
     const MemoryPart part(device_, "images");
     ensure_size(device_, picture_, "picture", pixels_of(settings) * 16);
     ensure_size(device_, encoded_, "encoded picture", pixels_of(settings) * 4);
     has_unlit_ = unlit;
+    open_ = open;
     if (unlit) ensure_size(device_, unlit_, "unlit colours", pixels_of(settings) * sizeof(glm::vec3));
+    if (settings.moments) ensure_size(device_, moments_, "moments", pixels_of(settings) * sizeof(glm::vec2));
 }
 
 void PictureOutput::record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame,
                                         const LevelParams& p, const PictureSettings& settings) {
-    const bool last = p.sample_index + 1 == settings.spp;
-    commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}}),
+    const bool encodes = !open_ && post_passes_.empty() && p.sample_index + 1 == settings.spp;
+    commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}, {"has_moments", settings.moments}}),
                  {{"frame", frame},
                   {"nodes", queues.level(0).nodes},
                   {"branches", queues.level(0).branches},
@@ -36,30 +41,65 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                   {"queue", queues.counters()},
                   {"picture", picture_},
                   {"encoded", encoded_},
-                  unlit()},
-                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, last,
-                                  last && post_passes_.empty(), scale_of(settings), 1 / float(settings.spp),
-                                  uint32_t(settings.tonemap)},
+                  unlit(),
+                  Binding::if_used("moments", settings.moments ? &moments_ : nullptr)},
+                 AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, encodes,
+                                  scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap),
+                                  settings.clamp.value_or(std::numeric_limits<float>::max())},
                  groups_for(p.capacity, 64));
 }
 
 bool PictureOutput::record_post(Commands& commands, const PictureSettings& settings) {
-    if (post_passes_.empty()) return false;
+    const bool posts = !post_passes_.empty();
+    if (!posts && !open_) return false;
+    if (posts && has_unlit_)
+        commands.run(device_.pass("unlit_share"), {{"picture", picture_}, {"unlit", unlit_}},
+                     uint32_t(pixels_of(settings)), groups_for(pixels_of(settings), 64));
     for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
-    const uint64_t pixels = pixels_of(settings);
-    commands.run(
-        device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
-        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap)},
-        groups_for(pixels, 64));
+    record_encoding(commands, settings, posts);
     return true;
 }
 
-void PictureOutput::download(Commands& commands, const PictureSettings& settings, Picture& out) const {
+/// `shares`: of unlit colours there are shares of the picture, else sums.
+void PictureOutput::record_encoding(Commands& commands, const PictureSettings& settings, bool shares) const {
+    const uint64_t pixels = pixels_of(settings);
+    commands.run(
+        device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
+        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap), shares},
+        groups_for(pixels, 64));
+}
+
+void PictureOutput::download_picture(Commands& commands, const PictureSettings& settings, Picture& out) const {
     out.width = settings.width;
     out.height = settings.height;
     out.radiance = commands.download<glm::vec4>(picture_, pixels_of(settings));
     for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
     out.encoded = commands.download<uint32_t>(encoded_, pixels_of(settings));
+}
+
+void PictureOutput::download(Commands& commands, const PictureSettings& settings, Picture& out) const {
+    download_picture(commands, settings, out);
+    if (!settings.moments) return;
+    for (const glm::vec2& moments : commands.download<glm::vec2>(moments_, pixels_of(settings)))
+        out.aovs.variance.push_back(variance_of_mean(moments.y, settings.spp));
+    out.aovs.sample_count.assign(pixels_of(settings), float(settings.spp));
+}
+
+Picture PictureOutput::look(Commands& commands, const PictureSettings& settings) const {
+    record_encoding(commands, settings, false);
+    commands.submit();
+    Picture picture;
+    download_picture(commands, settings, picture);
+    return picture;
+}
+
+float PictureOutput::noise(Commands& commands, const PictureSettings& settings) const {
+    const auto sums = commands.download<glm::vec4>(picture_, pixels_of(settings));
+    const auto moments = commands.download<glm::vec2>(moments_, pixels_of(settings));
+    std::vector<PixelMoments> pixels;
+    for (size_t i = 0; i < sums.size(); i++)
+        if (sums[i].w > 0) pixels.push_back({moments[i].x, variance_of_mean(moments[i].y, settings.spp)});
+    return noise_of(pixels);
 }
 
 }  // namespace peelray

@@ -90,6 +90,8 @@ struct Renderer::Impl {
     AovPictures aovs;
     Box box;  ///< what the settings say, else that of the moment
     RayCounts rays;
+    PictureSettings made;  ///< those of the settings; spp: the samples that there are
+    SamplesMade samples;
     uint32_t moved = 0;
     bool maps_moved = false;
 
@@ -103,17 +105,19 @@ struct Renderer::Impl {
         if (device.features.ray_tracing) structure_bodies = peelray::structure_bodies(source, assembly);
     }
 
-    void prepare(const RenderSettings& settings);
+    void prepare(const RenderSettings& settings, bool open);
     void prepare_tracer();
     glm::uvec2 camera_media() const;
     void prepare_view();
     void prepare_maps();
     void prepare_queues();
     void look_back();
-    FrameMeter render_frame(const Progress& progress);
+    FrameMeter render_frame(const PictureWatch& watch);
+    void render_pass(const Passes& passes, FrameMeter& meter, const Progress& progress);
+    void end_pass(Passes& passes);
     void describe_tracer();
     void render_maps(FrameMeter& meter, const Progress& progress);
-    void render_band(uint32_t sample, uint32_t first_row, FrameMeter& meter, const Progress& progress);
+    void render_band(uint32_t sample, uint32_t first_row, FrameMeter& meter, const std::function<void()>& progress);
     void record_band(uint32_t sample, uint32_t first_row);
     void record_shading(uint32_t sample, uint32_t first_row);
     bool finish_band(uint32_t first_row);
@@ -122,12 +126,13 @@ struct Renderer::Impl {
     void describe(RenderStats& stats);
 };
 
-void Renderer::Impl::prepare(const RenderSettings& settings) {
+void Renderer::Impl::prepare(const RenderSettings& settings, bool open) {
     f.settings = settings;
+    made = settings;
     check_settings(f.device, f.scene, settings);
     f.commands.time_passes(settings.time_passes);
     f.view.prepare(f.scene, settings);
-    output.prepare(settings, f.scene.has_unlit);
+    output.prepare(settings, f.scene.has_unlit, open);
     prepare_tracer();
     prepare_view();
     if (f.maps) prepare_maps();
@@ -232,20 +237,39 @@ void Renderer::Impl::look_back() {
 }
 
 /// The stages are those of docs/frame.md.
-FrameMeter Renderer::Impl::render_frame(const Progress& progress) {
+FrameMeter Renderer::Impl::render_frame(const PictureWatch& watch) {
     FrameMeter meter;
+    Passes passes(f.settings, watch);
+    const Progress progress = [&](double of_pass) {
+        if (watch.progress) watch.progress(passes.share(of_pass));
+    };
     rays = {};
     f.tracer->build(
         f.commands, [&] { f.scene.record_animation(f.commands, f.tracer->bodies()); }, meter);
     describe_tracer();
     if (f.maps) render_maps(meter, progress);
     if (f.counter) f.counter->record_begin(f.commands, f.pixels());
-    for (uint32_t sample = 0; sample < f.settings.spp; sample++)
-        for (uint32_t row = 0; row < f.settings.height; row += f.bands.rows())
-            render_band(sample, row, meter, progress);
+    while (passes.next() > 0) {
+        render_pass(passes, meter, progress);
+        end_pass(passes);
+    }
     finish_picture(meter);
-    rays.primary = f.pixels() * f.settings.spp;
+    rays.primary = f.pixels() * made.spp;
     return meter;
+}
+
+void Renderer::Impl::render_pass(const Passes& passes, FrameMeter& meter, const Progress& progress) {
+    const uint32_t first = passes.done(), end = passes.end_of_pass();
+    for (uint32_t sample = first; sample < end; sample++)
+        for (uint32_t row = 0; row < f.settings.height; row += f.bands.rows())
+            render_band(sample, row, meter,
+                        [&] { progress((sample - first + double(row) / f.settings.height) / (end - first)); });
+}
+
+void Renderer::Impl::end_pass(Passes& passes) {
+    made.spp = passes.end_of_pass();
+    passes.finish([&] { return output.noise(f.commands, made); }, [&] { return output.look(f.commands, made); });
+    samples = passes.made();
 }
 
 /// Where hits became planar for want of room, the constants say so.
@@ -264,18 +288,18 @@ void Renderer::Impl::render_maps(FrameMeter& meter, const Progress& progress) {
 }
 
 /// A band of a sample, as often as it takes to find room for all of its rays.
-void Renderer::Impl::render_band(uint32_t sample, uint32_t first_row, FrameMeter& meter, const Progress& progress) {
-    const double done = (sample + double(first_row) / f.settings.height) / f.settings.spp;
+void Renderer::Impl::render_band(uint32_t sample, uint32_t first_row, FrameMeter& meter,
+                                 const std::function<void()>& progress) {
     for (;; meter.redone++) {
         record_band(sample, first_row);
         f.commands.submit();
         if (finish_band(first_row)) break;
         // The counters told how much room is needed; the picture was left alone.
-        progress(done);
+        progress();
     }
     meter.add(f.commands);  // of the turn that fitted: its rays are counted, too
     count_rays();
-    progress(done);
+    progress();
 }
 
 void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
@@ -328,7 +352,7 @@ void Renderer::Impl::count_rays() {
 
 /// Post passes change the picture in place: not before its last band is known to have fitted.
 void Renderer::Impl::finish_picture(FrameMeter& meter) {
-    if (!output.record_post(f.commands, f.settings)) return;
+    if (!output.record_post(f.commands, made)) return;
     f.commands.submit();
     meter.add(f.commands);
 }
@@ -370,24 +394,28 @@ void Renderer::add_post_pass(PostPass pass) {
     impl_->output.add(std::move(pass));
 }
 
-RenderResult Renderer::render(const RenderSettings& settings, const Progress& progress) {
+RenderResult Renderer::render(const RenderSettings& settings, const PictureWatch& watch) {
     Impl& r = *impl_;
     Device& device = r.f.device;
     const MemoryPart part(device, "frame");
-    r.prepare(settings);
+    r.prepare(settings, Passes(settings, watch).are_several());
     if (settings.aovs && settings.motion) r.look_back();
 
     RenderResult result;
     Measurement measurement(settings.repeat);
-    for (uint32_t i = 0; i < measurement.frames(); i++)
-        measurement.add(r.render_frame([&](double share) {
-            if (progress) progress((i + share) / measurement.frames());
-        }));
+    PictureWatch frame_watch = watch;
+    for (uint32_t i = 0; i < measurement.frames(); i++) {
+        frame_watch.progress = [&](double share) {
+            if (watch.progress) watch.progress((i + share) / measurement.frames());
+        };
+        measurement.add(r.render_frame(frame_watch));
+    }
     RenderStats& stats = result.stats;
     measurement.describe(stats);
     r.describe(stats);
     result.rays = r.rays;
-    r.output.download(r.f.commands, settings, result);
+    r.output.download(r.f.commands, r.made, result);
+    result.samples = r.samples;
     if (settings.aovs) r.aovs.render(r.f, result.aovs);
     if (settings.aovs && settings.ray_setup) r.aovs.render_ray_setup(r.f, r.box, result.aovs);
     if (r.f.counter) result.aovs.costs = r.f.counter->download_pixels(r.f.commands, r.f.pixels());

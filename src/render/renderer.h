@@ -1,13 +1,13 @@
 // One picture of a scene: docs/frame.md tells it pass by pass.
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "render/picture_output.h"
 #include "render/render_settings.h"
 #include "render/render_stats.h"
 #include "scene/moment.h"
+#include "scene/passes.h"
 
 namespace peelray {
 
@@ -31,8 +31,7 @@ class Renderer {
     void add_post_pass(PostPass pass);
 
     /// Throws Error for impossible settings (naming the option) or when the device's limits or memory do not do.
-    /// `progress` is told the share done, [0, 1].
-    RenderResult render(const RenderSettings& settings, const std::function<void(double)>& progress = {});
+    RenderResult render(const RenderSettings& settings, const PictureWatch& watch = {});
 
   private:
     struct Impl;

@@ -32,11 +32,18 @@ struct PictureSettings {
     uint32_t gi = 0;                                           ///< diffuse bounces in a row that are traced, 0 to 16
     bool ambient = false;             ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
     bool energy_compensation = true;  ///< light that rough surfaces scatter several times is not lost (Turquin, 2019)
-    float exposure = 0;               ///< stops; applies to the encoded picture only
+    /// The largest channel that a sample's radiance may have, > 0: brighter ones are scaled down to it. None: no limit.
+    std::optional<float> clamp;
+    /// A picture may end with fewer samples than spp, but at least one: when this many seconds have passed since its
+    /// first sample was begun, or when it is this noisy (noise_of), both > 0. `noise_target` needs `moments`.
+    std::optional<double> time_limit;
+    std::optional<float> noise_target;
+    float exposure = 0;  ///< stops; applies to the encoded picture only
     Tonemap tonemap = Tonemap::neutral;
     bool aovs = false;       ///< also the auxiliary pictures
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
     bool motion = false;     ///< and Aovs::motion, which else is 0
+    bool moments = false;    ///< also those of SAMPLE_AOVS, whether there are others or not
     Camera camera_before;    ///< for `motion`: where the camera was at the moment before
     /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
     /// reference needs what is generated placed in it (Simulation).
@@ -48,6 +55,8 @@ struct Aovs {
 #define AOV_PICTURE(name, type, channels, nothing) std::vector<type> name;
     SURFACE_AOVS(AOV_PICTURE)
     RAY_SETUP_AOVS(AOV_PICTURE)
+    /// Of all samples, not only of that at the centre; with PictureSettings::moments alone.
+    SAMPLE_AOVS(AOV_PICTURE)
 #undef AOV_PICTURE
     /// Where it was counted: what all rays of a pixel cost, of all samples.
     std::vector<RayCosts> costs;
@@ -74,14 +83,41 @@ struct RayCounts {
     }
 };
 
+/// Why a picture has no more samples.
+enum class PictureEnd : uint8_t {
+    samples,  ///< it has all that were asked for
+    time_limit,
+    noise_target,
+    interrupt,  ///< whoever watched it had enough
+};
+constexpr auto names_of(PictureEnd) {
+    return std::to_array<Named<PictureEnd>>({{PictureEnd::samples, "samples"},
+                                             {PictureEnd::time_limit, "time limit"},
+                                             {PictureEnd::noise_target, "noise target"},
+                                             {PictureEnd::interrupt, "interrupt"}});
+}
+
+struct SamplesMade {
+    uint32_t count = 0;  ///< of each pixel
+    PictureEnd end = PictureEnd::samples;
+    std::optional<float> noise;  ///< see noise_of(); where moments were asked for, of more than one sample
+};
+
 struct Picture {
     uint32_t width = 0, height = 0;
+    SamplesMade samples;
     /// Linear, mean over the samples, before exposure; alpha: share of samples with a surface.
     std::vector<glm::vec4> radiance;
     std::vector<uint32_t> encoded;  ///< exposed, tone-mapped, 8-bit sRGB, red in the lowest byte
     Aovs aovs;
     RayCounts rays;
 };
+
+/// Of the mean of `samples` values, estimated from the sum of their squared deviations from that mean (Bessel's
+/// correction); of a single one 0, for nothing is known.
+inline float variance_of_mean(double squared_deviations, uint32_t samples) {
+    return samples < 2 ? 0 : float(squared_deviations / (double(samples) * (samples - 1)));
+}
 
 /// Do samples of rough lobes, rather than their means, make the picture?
 inline bool is_sampled(const PictureSettings& settings) {

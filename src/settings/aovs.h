@@ -13,6 +13,7 @@ namespace peelray {
 enum class AovSource : uint8_t {
     surface,    ///< what the camera sees
     ray_setup,  ///< what the paper sets up before it traces (Figure 7)
+    samples,    ///< what a pixel's samples are like
     costs,      ///< what rays cost
 };
 
@@ -23,6 +24,8 @@ inline std::vector<Aov> aovs_of(AovSource source) {
             return {SURFACE_AOVS(AOV_VALUE)};
         case AovSource::ray_setup:
             return {RAY_SETUP_AOVS(AOV_VALUE)};
+        case AovSource::samples:
+            return {SAMPLE_AOVS(AOV_VALUE)};
         case AovSource::costs:
             return {COST_AOVS(AOV_VALUE)};
     }
@@ -36,9 +39,8 @@ inline const RayCostField* cost_field(Aov aov) {
     return field >= 0 ? &kRayCostFields[size_t(field)] : nullptr;
 }
 
-/// Is it one of what the paper sets up before it traces?
-inline bool is_ray_setup(Aov aov) {
-    const std::vector<Aov> all = aovs_of(AovSource::ray_setup);
+inline bool is_from(AovSource source, Aov aov) {
+    const std::vector<Aov> all = aovs_of(source);
     return std::find(all.begin(), all.end(), aov) != all.end();
 }
 

@@ -151,12 +151,12 @@ constexpr auto names_of(RayKind) {
 /// Auxiliary pictures (path/aov_table.h).
 enum class Aov : uint8_t {
 #define AOV_VALUE(name, type, channels, nothing) name,
-    SURFACE_AOVS(AOV_VALUE) RAY_SETUP_AOVS(AOV_VALUE) COST_AOVS(AOV_VALUE)
+    SURFACE_AOVS(AOV_VALUE) RAY_SETUP_AOVS(AOV_VALUE) SAMPLE_AOVS(AOV_VALUE) COST_AOVS(AOV_VALUE)
 #undef AOV_VALUE
 };
 constexpr auto names_of(Aov) {
 #define AOV_NAME(name, type, channels, nothing) Named<Aov>{Aov::name, #name},
-    return std::to_array({SURFACE_AOVS(AOV_NAME) RAY_SETUP_AOVS(AOV_NAME) COST_AOVS(AOV_NAME)});
+    return std::to_array({SURFACE_AOVS(AOV_NAME) RAY_SETUP_AOVS(AOV_NAME) SAMPLE_AOVS(AOV_NAME) COST_AOVS(AOV_NAME)});
 #undef AOV_NAME
 }
 

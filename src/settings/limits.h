@@ -40,6 +40,13 @@ inline constexpr Limits kBounceLimits{.least = 0, .most = 16, .fault = "{} bounc
 inline constexpr Limits kSampleLimits{
     .least = 1, .most = 65536, .fault = "{} samples per pixel are out of range", .choose = "1 to 65536"};
 
+inline constexpr Limits kClampLimits{
+    .least = 0, .open = true, .fault = "a limit of {} to samples is impossible", .choose = "a radiance above 0"};
+inline constexpr Limits kTimeLimits{
+    .least = 0, .open = true, .fault = "a time limit of {} seconds is impossible", .choose = "one above 0"};
+inline constexpr Limits kNoiseLimits{
+    .least = 0, .open = true, .fault = "a noise of {} is impossible", .choose = "one above 0, such as 0.05"};
+
 /// Throws the Error of a value, as it is typed, that is out of its limits.
 [[noreturn]] void fail_limits(const Limits& limits, Setting setting, const std::string& value);
 /// Throws Error unless the vector is finite and its components are allowed.

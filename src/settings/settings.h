@@ -252,6 +252,7 @@ inline void add_scene(SettingList& list, SceneArguments& a) {
 struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
     uint32_t bounces = 4, gi = 0, spp = 1, seed = 0;
+    std::optional<float> clamp;  ///< radiance; none: samples are as bright as they are
     std::optional<MaterialOverride> material;
     bool floor = false;
     bool no_energy_compensation = false;
@@ -291,6 +292,12 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                 {.name = "seed",
                  .group = group,
                  .help = "of the random numbers: other values give other noise, with the same mean"});
+    add_setting(list, a.clamp,
+                {.name = "clamp",
+                 .group = group,
+                 .help = "scale down samples of which a channel is brighter than this radiance: fewer stray white "
+                         "dots, but a darker picture; default: none is",
+                 .limits = kClampLimits});
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});

@@ -21,8 +21,7 @@ static Emitters emitters_in(const PosedScene& posed, const PictureSettings& sett
     return any && samples_emitters(settings) ? emitters_of(scene, posed.assembly()) : Emitters{};
 }
 
-MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings,
-                              const std::function<void(double)>& progress) {
+MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings, const PictureWatch& watch) {
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
@@ -30,7 +29,7 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment(), emitters_in(scene, settings));
     const auto built = Clock::now();
     MadePicture made;
-    made.picture = tracer.render(settings, progress);
+    made.picture = tracer.render(settings, watch);
     const auto done = Clock::now();
 
     const std::string threads = counted("{} CPU thread{|s}", std::max(1u, std::thread::hardware_concurrency()));
@@ -56,7 +55,7 @@ namespace peelray {
     fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use {} ldc", setting::tracer);
 }
 
-MadePicture reference_picture(PosedScene&, const PictureSettings&, const std::function<void(double)>&) {
+MadePicture reference_picture(PosedScene&, const PictureSettings&, const PictureWatch&) {
     fail_without_reference();
 }
 

@@ -1,14 +1,11 @@
 // The CPU reference's pictures. Without Embree (PEELRAY_REFERENCE=OFF) all of these throw Error.
 #pragma once
 
-#include <functional>
-
 #include "workspace/workspace.h"
 
 namespace peelray {
 
-MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings,
-                              const std::function<void(double)>& progress);
+MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings, const PictureWatch& watch);
 
 /// Which reference this is: its pictures do not depend on the machine.
 std::string reference_version();

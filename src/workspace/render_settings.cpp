@@ -30,6 +30,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     settings.gi = a.gi;
     settings.spp = a.spp;
     settings.seed = a.seed;
+    settings.clamp = a.clamp;
     settings.repeat = a.repeat;
     settings.rebuild = a.rebuild;
     settings.visibility = a.visibility;

@@ -23,6 +23,7 @@ PictureStats picture_stats(const Machine& machine, const PosedScene& scene, cons
     stats.triangles = scene.triangles();
     stats.box = scene.bounds();
     stats.origin = scene.scene().origin;
+    stats.samples = picture.samples;
     stats.rays = picture.rays;
     return stats;
 }
@@ -47,7 +48,8 @@ std::string cut_note(const RayCounts& rays, uint32_t bounces) {
     if (share <= kNoticed) return {};
     const uint32_t more = std::min(2 * bounces, uint32_t(kBounceLimits.most));
     const std::string text = fmt::format(
-        "{} ({:.1f} % of the camera's) would pass through more glass or blended surfaces than {} {} follows: {} the environment there",
+        "{} ({:.1f} % of the camera's) would pass through more glass or blended surfaces than {} {} follows: {} the "
+        "environment there",
         counted("{} ray{|s}", rays.cut_refraction), 100 * share, setting::bounces, bounces,
         counted("{it sees|they see}", rays.cut_refraction));
     return more > bounces ? fmt::format("{}; {} {} goes further", text, setting::bounces, more) : text;

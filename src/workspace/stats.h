@@ -26,6 +26,7 @@ struct PictureStats {
     uint64_t triangles = 0;  ///< of the scene, with all instances
     Box box;                 ///< of the scene, relative to `origin`
     glm::dvec3 origin{0};    ///< Scene::origin
+    SamplesMade samples;
     RayCounts rays;
     RenderStats render;           ///< of Tracer::reference only times and passes
     RayCosts largest_of_a_pixel;  ///< where costs were counted

@@ -42,25 +42,28 @@ void Workspace::check_validation() const {
     if (device_) device_->check_validation();
 }
 
-MadePicture Workspace::render(const Shot& shot, const Progress& progress) {
-    return render(render_settings(settings_), shot, progress);
+MadePicture Workspace::render(const Shot& shot, const PictureWatch& watch) {
+    return render(render_settings(settings_), shot, watch);
 }
 
-MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const Progress& progress) {
+MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const PictureWatch& watch) {
     if (shot.time) scene_.move_to(*shot.time);
     settings.camera = turned(scene_.camera(), shot.turn);
     settings.bounds = scene_.bounds();
     settings.env_mode = scene_.env_mode();
     const std::optional<PosedScene::Glimpse> before = look_back(settings, shot);
     settings.moment_before = before ? &before->moment : nullptr;
-    const auto report = [&](double share) {
-        check_interrupt();
-        if (progress) progress(share);
+    PictureWatch interrupts = watch;
+    bool whole = false;  // there is something to keep
+    interrupts.progress = [&](double share) {
+        if (!whole) check_interrupt();
+        if (watch.progress) watch.progress(share);
     };
+    if (watch.stop) interrupts.stop = [&] { return whole = true, watch.stop(); };
     if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
-    MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, report)
-                                                            : render_on_device(settings, report);
+    MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, interrupts)
+                                                            : render_on_device(settings, interrupts);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
     const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
@@ -130,8 +133,8 @@ void Workspace::note_cubes(const RenderStats& stats) {
     if (!tolerance.empty() && !std::exchange(noted_.tolerance, true)) note(notes_, tolerance);
 }
 
-MadePicture Workspace::render_on_device(const RenderSettings& settings, const Progress& progress) {
-    RenderResult result = renderer_for(settings).render(settings, progress);
+MadePicture Workspace::render_on_device(const RenderSettings& settings, const PictureWatch& watch) {
+    RenderResult result = renderer_for(settings).render(settings, watch);
     device_->check_validation();
     MadePicture made;
     made.stats = picture_stats(machine_of(*device_), scene_, result);

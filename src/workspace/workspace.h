@@ -10,7 +10,6 @@
 // Nothing here prints.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -38,9 +37,6 @@ struct Shot {
 /// Opens the device when a tracer first needs one and keeps it, and what is on it, from picture to picture.
 class Workspace {
   public:
-    /// Told the share of a picture that is done, [0, 1]; what it throws ends the work.
-    using Progress = std::function<void(double share)>;
-
     /// Opens the scene of `settings`. Throws Error.
     explicit Workspace(const PictureArguments& settings, Notes notes = {});
     ~Workspace();
@@ -50,9 +46,10 @@ class Workspace {
 
     /// The picture that the settings ask for. Throws Error: no device, impossible settings, an interrupt, a validation
     /// message.
-    MadePicture render(const Shot& shot = {}, const Progress& progress = {});
-    /// The same scene rendered in another way; camera and bounds are the workspace's.
-    MadePicture render(RenderSettings settings, const Shot& shot = {}, const Progress& progress = {});
+    MadePicture render(const Shot& shot = {}, const PictureWatch& watch = {});
+    /// The same scene rendered in another way; camera and bounds are the workspace's. With PictureWatch::stop
+    /// interrupts are not looked for any more once a pass is whole: that is left to it.
+    MadePicture render(RenderSettings settings, const Shot& shot = {}, const PictureWatch& watch = {});
 
     /// Throws Error where a tracer cannot render on this device.
     void check(Tracer tracer);
@@ -70,7 +67,7 @@ class Workspace {
     std::optional<PosedScene::Glimpse> look_back(RenderSettings& settings, const Shot& shot);
     MadePicture in_world(MadePicture made) const;
     void note_cubes(const RenderStats& stats);
-    MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
+    MadePicture render_on_device(const RenderSettings& settings, const PictureWatch& watch);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 
     PictureArguments settings_;

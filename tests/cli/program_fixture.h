@@ -107,6 +107,11 @@ class ProgramTest : public TempFolder {
         return names;
     }
 
+    void remove_outputs() const {
+        std::filesystem::remove_all(folder / "out");
+        std::filesystem::create_directory(folder / "out");
+    }
+
     /// Status 0, no complaint, and no outputs but these.
     void expect_done(const Outcome& run, const std::vector<std::string>& names) const {
         EXPECT_EQ(run.status, 0) << run.err;

@@ -74,10 +74,6 @@ class SequenceTest : public ProgramTest {
         return run(words(name, more, scene), variables);
     }
 
-    void remove_outputs() const {
-        std::filesystem::remove_all(folder / "out");
-        std::filesystem::create_directory(folder / "out");
-    }
     /// All files of out/ with what they hold.
     std::map<std::string, std::string> contents() const {
         std::map<std::string, std::string> all;

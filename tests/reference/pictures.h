@@ -35,6 +35,11 @@ class PictureTest : public testing::Test {
         const Emitters emitters = emitters_of(stage.scene, assemble(stage.scene, rest, motion_of(stage.scene, "")));
         return PathTracer(stage.scene, rest, geometry, environment, emitters).render(settings, {}, threads);
     }
+    /// The same while somebody looks on.
+    Picture watched(const Stage& stage, const RenderSettings& settings, const PictureWatch& watch) {
+        const Geometry geometry = flatten(stage.scene);
+        return PathTracer(stage.scene, at_rest(stage.scene), geometry, black).render(settings, watch);
+    }
     /// Of a moment of the scene's first animation, if it has any; with Aovs::motion since the moment `before`.
     Picture render_at(const Scene& scene, double time, double before, RenderSettings settings) {
         const std::string which = scene.animations.empty() ? "" : "0";

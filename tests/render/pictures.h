@@ -23,6 +23,10 @@ class PictureTest : public DeviceTest {
     RenderResult render(const Stage& stage, const Environment& environment, const RenderSettings& settings) {
         return renderer_for(stage, environment)->render(settings);
     }
+    /// The same while somebody looks on.
+    RenderResult watched(const Stage& stage, const RenderSettings& settings, const PictureWatch& watch) {
+        return renderer_for(stage, black)->render(settings, watch);
+    }
     /// For several pictures of a scene that stands still; the stage must outlive it.
     std::unique_ptr<Renderer> renderer_for(const Stage& stage, const Environment& environment) {
         const Moment rest = at_rest(stage.scene);

@@ -48,7 +48,7 @@ TEST(Manifest, ChangesWithEverySettingThatChangesPictures) {
     }
     // A new setting comes to stand in the manifest, or here.
     EXPECT_EQ(others, (std::set<std::string>{"output", "repeat", "device", "validate", "frames", "shard", "resume",
-                                             "stats", "counters"}));
+                                             "stats", "counters", "preview", "keep-partial"}));
 }
 
 TEST(Manifest, WritesValuesAsRunsBegunEarlierDid) {

@@ -1,0 +1,61 @@
+#include "reference/sample_sums.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "scene/encoding.h"
+#include "scene/passes.h"
+
+namespace peelray {
+
+SampleSums::SampleSums(const PictureSettings& settings, bool has_unlit)
+    : settings_(settings), sums_(size_t(settings.width) * settings.height, glm::dvec4(0)) {
+    if (has_unlit) unlit_.assign(sums_.size(), glm::dvec3(0));
+    if (settings.moments) moments_.resize(sums_.size());
+}
+
+void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec3& radiance, const glm::dvec3& unlit, bool surface) {
+    // One bad number must not poison a pixel.
+    bool usable = true;
+    for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
+    const double largest = std::max({radiance.x, radiance.y, radiance.z});
+    const double kept = settings_.clamp && largest > *settings_.clamp ? *settings_.clamp / largest : 1;
+    const glm::dvec3 added = usable ? radiance * kept : glm::dvec3(0);
+    sums_[pixel] += glm::dvec4(added, surface ? 1 : 0);
+    if (usable && !unlit_.empty()) unlit_[pixel] += unlit * kept;
+    if (moments_.empty()) return;
+    Moments& moments = moments_[pixel];
+    const double luminance = glm::dot(added, glm::dvec3(LUMINANCE_RED, LUMINANCE_GREEN, LUMINANCE_BLUE));
+    const double before = luminance - moments.mean;
+    moments.mean += before / (index + 1);
+    moments.deviations += before * (luminance - moments.mean);
+}
+
+void SampleSums::store(Picture& picture, uint32_t samples) const {
+    picture.width = settings_.width;
+    picture.height = settings_.height;
+    picture.radiance.resize(sums_.size());
+    picture.encoded.resize(sums_.size());
+    constexpr size_t kGrain = 1024;  // encoding a pixel takes some 100 ns
+    parallel_for(sums_.size(), kGrain, [&](size_t i) {
+        const glm::dvec4 mean = sums_[i] / double(samples);
+        const glm::dvec3 unlit = (unlit_.empty() ? glm::dvec3(0) : unlit_[i]) / double(samples);
+        picture.radiance[i] = glm::vec4(mean);
+        picture.encoded[i] = encode(glm::dvec3(mean) - unlit, settings_.exposure, settings_.tonemap, unlit);
+    });
+    if (moments_.empty()) return;
+    picture.aovs.variance.clear();
+    for (const Moments& moments : moments_)
+        picture.aovs.variance.push_back(variance_of_mean(moments.deviations, samples));
+    picture.aovs.sample_count.assign(moments_.size(), float(samples));
+}
+
+float SampleSums::noise(uint32_t samples) const {
+    std::vector<PixelMoments> pixels;
+    for (size_t i = 0; i < moments_.size(); i++)
+        if (sums_[i].w > 0)
+            pixels.push_back({float(moments_[i].mean), variance_of_mean(moments_[i].deviations, samples)});
+    return noise_of(pixels);
+}
+
+}  // namespace peelray

@@ -1,0 +1,34 @@
+// What the samples of a picture's pixels add up to, in double precision.
+#pragma once
+
+#include <vector>
+
+#include "scene/picture.h"
+
+namespace peelray {
+
+/// Pixels are independent of each other: threads may add to different ones at the same time.
+class SampleSums {
+  public:
+    /// `settings` must outlive it; `has_unlit`: some material of the scene is.
+    SampleSums(const PictureSettings& settings, bool has_unlit);
+
+    /// The next sample of a pixel, numbered row by row, which must be the sample `index` of it. What is negative or not
+    /// finite counts as black, and PictureSettings::clamp holds. `unlit`: of `radiance`, what a display shows as it is.
+    void add(size_t pixel, uint32_t index, const glm::dvec3& radiance, const glm::dvec3& unlit, bool surface);
+    /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples.
+    void store(Picture& picture, uint32_t samples) const;
+    /// With PictureSettings::moments: noise_of() these samples.
+    float noise(uint32_t samples) const;
+
+  private:
+    struct Moments {
+        double mean = 0, deviations = 0;  ///< of the luminances; the latter: squared, their sum
+    };
+    const PictureSettings& settings_;
+    std::vector<glm::dvec4> sums_;
+    std::vector<glm::dvec3> unlit_;  ///< empty: no unlit material
+    std::vector<Moments> moments_;   ///< empty: not asked for
+};
+
+}  // namespace peelray
