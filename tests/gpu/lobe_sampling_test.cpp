@@ -75,37 +75,5 @@ TEST_F(LobeProbe, DirectionsToTheSky) {
     }
 }
 
-/// Over the pixels, for several samples; together with those of the next pixel and of another purpose.
-TEST_F(LobeProbe, RandomPairsOfManySeeds) {
-    struct In {
-        glm::uvec2 pixel;
-        uint32_t index, purpose;
-    };
-    struct Out {
-        glm::uvec3 hash;
-        glm::vec2 pair;
-    };
-    const auto pairs = [&](uint32_t index, uint32_t purpose) {
-        std::vector<In> in;
-        for (uint32_t i = 0; i < 102400; i++) in.push_back({{i % 320, i / 320}, index, purpose});
-        std::vector<glm::vec2> out;
-        for (const Out& o : probe<Out>("probe_random", in)) out.push_back(o.pair);
-        return out;
-    };
-    const double least = sidak(level, 12);
-    for (const uint32_t index : {0u, 1u, 1000u}) {
-        const auto facet = pairs(index, 1), sky = pairs(index, 2);
-        EXPECT_GT(fit_uniform(facet).p, least) << fit_uniform(facet);
-        EXPECT_GT(fit_uniform(sky).p, least) << fit_uniform(sky);
-        std::vector<glm::vec2> both, neighbours;
-        for (size_t i = 0; i < facet.size(); i++) {
-            both.emplace_back(facet[i].x, sky[i].x);
-            neighbours.emplace_back(facet[i].x, facet[(i + 1) % facet.size()].x);
-        }
-        EXPECT_GT(fit_uniform(both).p, least) << fit_uniform(both);
-        EXPECT_GT(fit_uniform(neighbours).p, least) << fit_uniform(neighbours);
-    }
-}
-
 }  // namespace
 }  // namespace peelray

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "probe_fixture.h"
+#include "reference/random_numbers.h"
 
 namespace peelray {
 namespace {
@@ -25,10 +26,11 @@ struct GgxOut {
 };
 struct RandomIn {
     uvec2 pixel;
-    uint32_t index, dimension;
+    uint32_t level, index, bits, purpose, picture;
 };
 struct RandomOut {
     uvec3 hash;
+    uint32_t branch;
     vec2 pair;
 };
 
@@ -179,62 +181,22 @@ TEST_F(SamplingProbe, WhiteFurnaceLosesLightButNeverGainsAny) {
         }
 }
 
-TEST_F(SamplingProbe, HashIsPcg3dAndPairsAreR2) {
-    std::vector<RandomIn> in{{{0, 0}, 0, 0}, {{1, 2}, 0, 3}};
-    for (int i = 0; i < 1000; i++) in.push_back({{bits(), bits()}, bits(), bits()});
+/// Bit for bit: a picture does not depend on who draws its random numbers.
+TEST_F(SamplingProbe, RandomNumbersAreTheReferences) {
+    std::vector<RandomIn> in{{{0, 0}, 0, 0, 0, 0, 0}, {{1, 2}, 0, 0, 0, 3, 0}, {{5, 7}, 1, 65535, 16, 2, 9}};
+    for (int i = 0; i < 1000; i++) {
+        const uint32_t width = bits() % 17;
+        in.push_back({{bits(), bits()}, bits() % 17, bits() & ((1u << width) - 1), width, bits(), bits()});
+    }
     const auto out = probe<RandomOut>("probe_random", in);
-    const auto pcg3d = [](uint32_t x, uint32_t y, uint32_t z) {
-        uvec3 v(x, y, z);
-        const auto mix = [&] {
-            for (int k = 0; k < 3; k++) v[k] += v[(k + 1) % 3] * v[(k + 2) % 3];
-        };
-        for (int k = 0; k < 3; k++) v[k] = v[k] * 1664525u + 1013904223u;
-        mix();
-        for (int k = 0; k < 3; k++) v[k] ^= v[k] >> 16;
-        mix();
-        return v;
-    };
     for (size_t i = 0; i < in.size(); i++) {
         const RandomIn& x = in[i];
-        ASSERT_EQ(out[i].hash, pcg3d(x.pixel.x, x.pixel.y, x.dimension));
-        // Roberts' R2 sequence: steps of 1/g and 1/g², g the plastic number, the root of g³ = g + 1; the probe's seed
-        // is a hash.
-        const uvec3 shift = pcg3d(pcg3d(x.pixel.x, x.pixel.y, 0).x, x.dimension, 0x9e3779b9u);
-        for (int k = 0; k < 2; k++) {
-            const auto step = uint32_t(std::llround(4294967296.0 / std::pow(1.32471795724474602596, k + 1)));
-            ASSERT_EQ(out[i].pair[k], float((shift[k] + step * x.index) >> 8) / 16777216.0f);
-        }
-        ASSERT_TRUE(out[i].pair.x >= 0 && out[i].pair.x < 1 && out[i].pair.y >= 0 && out[i].pair.y < 1);
+        ASSERT_EQ(out[i].hash, hash3({x.pixel, x.purpose}));
+        const uint32_t pixel = path_seed(x.pixel.x, x.pixel.y), branch = branch_seed(pixel, x.level & 3, x.level);
+        ASSERT_EQ(out[i].branch, branch);
+        const PixelSample sample{x.index, x.bits, x.picture};
+        ASSERT_EQ(glm::dvec2(out[i].pair), random_pair(x.level == 0 ? pixel : branch, x.level, x.purpose, sample));
     }
-}
-
-TEST_F(SamplingProbe, RandomPairsAreUniformOverPixelsAndOverSamples) {
-    std::vector<RandomIn> pixels, indices;
-    for (uint32_t i = 0; i < 65536; i++) pixels.push_back({{i % 256, i / 256}, 3, 1});
-    for (uint32_t i = 0; i < 4096; i++) indices.push_back({{17, 4}, i, 2});
-    const auto count = [](const std::vector<RandomOut>& out) {
-        std::array<int, 256> cells{};
-        for (const auto& o : out) cells[size_t(o.pair.y * 16) * 16 + size_t(o.pair.x * 16)]++;
-        return cells;
-    };
-    double chi2 = 0;
-    for (const int n : count(probe<RandomOut>("probe_random", pixels))) chi2 += (n - 256.0) * (n - 256.0) / 256;
-    EXPECT_LT(chi2, 330) << "255 degrees of freedom, 99.9 %";
-    EXPECT_GT(chi2, 180);
-    // The R2 sequence is far more even than chance: 16 points a cell, within a few.
-    for (const int n : count(probe<RandomOut>("probe_random", indices))) ASSERT_NEAR(n, 16, 4);
-    // Neighbours and depths are independent.
-    std::vector<RandomIn> other = pixels;
-    for (auto& x : other) x.dimension = 2;
-    const auto a = probe<RandomOut>("probe_random", pixels), b = probe<RandomOut>("probe_random", other);
-    double across = 0, between = 0, beside = 0;
-    for (size_t i = 0; i + 1 < a.size(); i++) {
-        across += (a[i].pair.x - 0.5) * (a[i].pair.y - 0.5) * 12;
-        between += (a[i].pair.x - 0.5) * (b[i].pair.x - 0.5) * 12;
-        beside += (a[i].pair.x - 0.5) * (a[i + 1].pair.x - 0.5) * 12;
-    }
-    for (const double sum : {across, between, beside})
-        EXPECT_NEAR(sum / double(a.size()), 0, 0.016) << "a correlation";  // four sigma
 }
 
 }  // namespace
