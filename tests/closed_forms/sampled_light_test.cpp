@@ -181,5 +181,30 @@ TEST_F(SampledLightTest, ShadowsOfBallsAreSoft) {
     estimate(stage, with_distribution(black), settings, 6).expect(glm::dvec3(0.5), 0.04);
 }
 
+TEST_F(SampledLightTest, OneOfManyLampsStandsForAll) {
+    const Camera above = orthographic({0, 0.5f, 0}, {0, 0, 0}, 0.02f, {0, 0, -1});
+    Stage stage;
+    stage.add(ground(8), lambert({1, 1, 1}));
+    stage.sun({0, -1, 0}, {0.5f, 0.5f, 0.5f});
+    glm::dvec3 want = glm::dvec3(0.5) / double(kPi);
+    for (int i = 0; i < 300; i++) {
+        // On a spiral that rises, ever brighter; one in seven behind the floor.
+        const glm::dvec3 place(std::sin(i * 2.4) * 3, (i % 7 == 3 ? -1 : 1) * (0.5 + i * 0.01), std::cos(i * 2.4) * 3);
+        const glm::dvec3 color = glm::dvec3(i % 3, i % 5, 1) * (i * 1e-3);
+        stage.lamp(glm::vec3(place), glm::vec3(color));
+        const double distance = glm::length(place);
+        want += color * std::max(0.0, place.y) / (distance * distance * distance * double(kPi));
+    }
+    RenderSettings settings = settings_for(above, 16);
+    settings.spp = 16;
+    const Estimate got = estimate(stage, black, settings, 8);
+    got.expect(want, 2e-3);
+    EXPECT_LT(got.error.y, 0.01 * want.y);
+    EXPECT_LE(render(stage, black, settings).rays.shadow, 16u * 16 * 16 * 2) << "of the sun, and of one lamp";
+    // Without samples all count.
+    settings.spp = 1;
+    EXPECT_TRUE(near(mean_radiance(render(stage, black, settings)), want, 1e-3));
+}
+
 }  // namespace
 }  // namespace peelray
