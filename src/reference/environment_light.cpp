@@ -21,7 +21,9 @@ double Shader::environment_share(const glm::dvec3& direction, double density) co
 /// A ray that brings all of the light sees its mean over the cone: a sun's disc in a curved mirror would be noise. What
 /// is shared must be the same light from both sides.
 double Shader::environment_blur(const Cone& cone, double density) const {
-    return context_.samples_environment() && density == 0 ? context_.surroundings.blur_of(cone.spread) : 0;
+    if (!context_.samples_environment() || density != 0) return 0;
+    // All of a pixel's cone, not a sample's share of it: a sun that fills a part of it is seen by that part.
+    return context_.surroundings.blur_of(cone.spread * std::sqrt(double(context_.settings.spp)));
 }
 
 Shader::BothSides Shader::scattered(const Lit& at) {

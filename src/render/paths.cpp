@@ -38,6 +38,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                                                  {"by_number", camera && f.view.by_number()},
                                                  {"layered", layered},
                                                  {"env_sampled", f.env_sampled()},
+                                                 {"sampled", (f.constants.effects & EFFECT_SAMPLED) != 0},
                                                  {"indirect", f.indirect()},
                                                  {"emitting", f.emitting()},
                                                  {"many_lamps", f.drawn_lamps() > 0},

@@ -201,6 +201,8 @@ void Renderer::Impl::prepare_view() {
     frame.effects = (f.tracer->traces() || maps ? effects_of(settings, maps) : 0) |
                     (settings.energy_compensation ? EFFECT_COMPENSATION : 0u) |
                     (is_sampled(settings) && !maps ? EFFECT_SAMPLED : 0u);  // a blurred cube map is all of a rough lobe
+    // All of a pixel's cone, not a sample's share of it: a sun that fills a part of it is seen by that part.
+    frame.env_texels *= std::sqrt(float(settings.spp));
     frame.sample_bits = uint32_t(std::bit_width(settings.spp - 1));
     frame.seed = settings.seed;
     frame.bounces = settings.bounces;
