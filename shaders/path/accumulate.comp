@@ -40,11 +40,12 @@ void main() {
     const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
-    vec4 sum = vec4(finite ? radiance : vec3(0), (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
+    const float alpha = params.straight != 0u ? 1.0 - min(backdropShare(i, node), 1.0) : (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0;
+    vec4 sum = vec4(finite ? radiance : vec3(0), alpha);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
     vec3 shown = vec3(0);
     // Not what is seen through it.
     if (has_unlit) shown = unlitShare(at, finite && (node.flags & NODE_UNLIT) != 0u ? node.radiance : vec3(0), sum.rgb);
-    if (params.encodes != 0u) encoded[at] = encode(sum.rgb, shown, params.scale, params.share, params.curve);
+    if (params.encodes != 0u) encoded[at] = encode(sum, shown, params.scale, params.share, params.curve, params.straight != 0u);
 }

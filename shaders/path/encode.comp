@@ -14,5 +14,5 @@ BUFFER(readonly, 2, vec3, unlit)
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= params.pixels) return;
-    encoded[i] = encode(picture[i].rgb, has_unlit ? unlit[i] : vec3(0), params.scale, params.share, params.curve);
+    encoded[i] = encode(picture[i], has_unlit ? unlit[i] : vec3(0), params.scale, params.share, params.curve, params.straight != 0u);
 }

@@ -3,6 +3,7 @@
 #define PEELRAY_GATHER_GLSL
 
 #include "path/path_params.h"
+#include "path/shading.glsl"
 
 /// A node's radiance and what arrives along its shadow rays, always added in the same order.
 vec3 litRadiance(PathNode node) {
@@ -27,6 +28,17 @@ vec3 childrenRadiance(uint i, PathNode node) {
     }
     sum += children.weight1 * second;
     return sum;
+}
+
+/// Share of the backdrop's light that comes to node `i` straight through blended surfaces, where the picture is transparent.
+float backdropShare(uint i, PathNode node) {
+    if ((node.flags & NODE_BACKDROP) != 0u) return uintBitsToFloat(node.first_light);
+    if ((node.flags & NODE_BRANCHES) == 0u) return 0.0;
+    const PathBranches children = branches[i];
+    if (children.child1 == BACKDROP_CHILD) return luminance(children.weight1);
+    if (children.child1 >= params.next_capacity) return 0.0;
+    const PathNode next = next_nodes[children.child1];
+    return (next.flags & NODE_BACKDROP) != 0u ? luminance(children.weight1) * uintBitsToFloat(next.first_light) : 0.0;
 }
 
 #endif

@@ -40,6 +40,7 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
+#include "path/backdrop.glsl"
 #include "path/emitters.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
@@ -341,6 +342,9 @@ Interface mediaAround(uint i, float t, uint channel, inout Scattering c, out vec
     return is_wall ? mediaInterface(wall, channel) : interfaceInAir(materialOf(c.surface), c.surface.front, channel);
 }
 
+/// Is it what the camera sees of the backdrop through blended surfaces that are not followed any further?
+bool passesUntraced(Branch second) { return blended && !second.traced && largest(second.weight) > 0.0 && seesBackdrop(second.medium, params.level + 1u); }
+
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
 void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
@@ -362,7 +366,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     if (!coat) c.refraction.weight *= beside;
     // What is not traced sees the environment.
     if (!c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
-    if (!c.refraction.traced) c.node.radiance += untracedLight(c.refraction);
+    if (!c.refraction.traced) c.node.radiance += passesUntraced(c.refraction) ? c.refraction.weight * backdropRadiance(c.refraction.direction) : untracedLight(c.refraction);
     uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
     if ((m.flags & MATERIAL_UNLIT) != 0u) {
@@ -416,6 +420,7 @@ void emitBranches(uint i, Scattering c, RayState state) {
         emitRay(children.child2, c.diffuse, back ? c.behind : c.before, c.surface, c.from, c.path_weight * c.diffuse.weight, branchSeed(state.seed, 2u, params.level),
                 state.scattered + 1u);
     }
+    if (frame[0].backdrop == BACKDROP_NONE && passesUntraced(c.refraction)) children.child1 = BACKDROP_CHILD;
     branches[i] = children;
 }
 
@@ -435,8 +440,7 @@ void main() {
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
     c.found = NO_DRAWN_LIGHT;
-    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyAlong(ray, state);
-    if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
+    if (valid && hit.triangle == NO_TRIANGLE) c.node = missNode(ray.direction, state.medium, params.level, skyAlong(ray, state), layered ? media_walls[i].passed : vec3(1));
     if (valid && hit.triangle != NO_TRIANGLE) {
         c.from = SurfaceId(hit.instance, hit.triangle);
         shadeHit(i, ray, hit, state, c);
@@ -445,7 +449,7 @@ void main() {
     if (lane == 0u) reserve();
     barrier();
     if (valid) {
-        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced)) {
+        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced) || (frame[0].backdrop == BACKDROP_NONE && passesUntraced(c.refraction))) {
             c.node.flags |= NODE_BRANCHES;
             if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
             emitBranches(i, c, state);

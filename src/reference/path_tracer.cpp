@@ -97,6 +97,7 @@ void prepare(Picture& picture, const PictureSettings& s) {
     const size_t pixels = size_t(s.width) * s.height;
     picture.width = s.width;
     picture.height = s.height;
+    picture.transparent = s.backdrop.is_transparent();
     picture.radiance.resize(pixels);
     picture.encoded.resize(pixels);
     picture.rays.primary = uint64_t(pixels) * s.spp;
@@ -219,7 +220,8 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         // One bad number must not poison a pixel.
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
-        sum += glm::dvec4(usable ? radiance : glm::dvec3(0), hit.hit() ? 1 : 0);
+        const double alpha = s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit();
+        sum += glm::dvec4(usable ? radiance : glm::dvec3(0), alpha);
         if (usable) unlit += shader.unlit();
         if (s.aovs && sample == 0 && hit.hit()) {
             const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
@@ -231,7 +233,9 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
     sum /= double(s.spp);
     picture.radiance[at] = glm::vec4(sum);
     unlit /= double(s.spp);
-    picture.encoded[at] = encode(glm::dvec3(sum) - unlit, s.exposure, s.tonemap, unlit);
+    picture.encoded[at] = s.backdrop.is_transparent()
+                              ? encode_straight(glm::dvec3(sum) - unlit, sum.w, s.exposure, s.tonemap, unlit)
+                              : encode(glm::dvec3(sum) - unlit, s.exposure, s.tonemap, unlit);
 }
 
 /// One thread's share: tiles until there are none left.

@@ -20,10 +20,7 @@ glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
 
 glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
-    if (!hit.hit())
-        return meeting.passed * environment_share(arriving.direction, arriving.density) *
-               context_.surroundings.seen(arriving.direction, environment_blur(arriving.cone, arriving.density),
-                                          arriving.sees_sun, context_.rough_limit);
+    if (!hit.hit()) return meeting.passed * missed(arriving, arriving.weight * meeting.passed);
     const double width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
@@ -36,7 +33,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     glm::dvec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
-        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on)));
+        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on, path)));
     }
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
@@ -67,8 +64,10 @@ glm::dvec3 Shader::scattered_light(const Surface& s, const Path& path, const Mee
     return direct + follow(diffuse, s, path, at.triangle, 2);
 }
 
-/// A branch that no ray follows sees the environment.
-glm::dvec3 Shader::untraced(const Branch& branch) const {
+/// A branch that no ray follows sees the environment or, straight from the camera, what is to be seen instead.
+glm::dvec3 Shader::untraced(const Branch& branch, const Path& path) const {
+    if (branch.passes && path.is_straight() && context_.settings.backdrop.kind != Backdrop::Kind::environment)
+        return branch.weight * backdrop(branch.direction);
     const double blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
     return branch.weight * environment_share(branch.direction, branch.density) *
            context_.surroundings.radiance(branch.direction, blur);
@@ -79,7 +78,10 @@ glm::dvec3 Shader::untraced(const Branch& branch) const {
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
-    if (!branch.traced) return untraced(branch);
+    if (!branch.traced) {
+        if (branch.passes && path.is_straight()) through_ += luminance(path.weight * branch.weight);
+        return untraced(branch, path);
+    }
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;
@@ -95,6 +97,22 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
     return branch.weight * radiance(next, hit(next));
+}
+
+/// What the camera sees where nothing is before it.
+glm::dvec3 Shader::backdrop(const glm::dvec3& direction) const {
+    const Backdrop& seen = context_.settings.backdrop;
+    return seen.kind == Backdrop::Kind::blurred ? context_.surroundings.blurred(direction) : glm::dvec3(seen.color);
+}
+
+/// What a ray that hits nothing sees; `weight`: of the pixel's light.
+glm::dvec3 Shader::missed(const Path& path, const glm::dvec3& weight) {
+    const bool straight = path.is_straight();
+    if (straight) through_ += luminance(weight);
+    if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
+    return environment_share(path.direction, path.density) *
+           context_.surroundings.seen(path.direction, environment_blur(path.cone, path.density), path.sees_sun,
+                                      context_.rough_limit);
 }
 
 /// Has the path come as far as it is followed, but for what `passes` straight through a blended surface? Diffuse

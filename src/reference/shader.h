@@ -70,6 +70,8 @@ class Shader {
         uint32_t scattered = 0;  ///< diffuse bounces so far
         uint32_t passed = 0;     ///< blended surfaces so far: those levels are no bounces
         Channel channel = Channel::all;
+        /// Straight from the camera?
+        bool is_straight() const { return passed == level; }
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
@@ -82,6 +84,8 @@ class Shader {
     const RayCounts& rays() const { return rays_; }
     /// What of the camera ray's light an unlit surface sends.
     const glm::dvec3& unlit() const { return unlit_; }
+    /// Share of the backdrop's light that comes to the camera.
+    double through() const { return through_; }
 
   private:
     struct Branch {
@@ -161,9 +165,12 @@ class Shader {
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
-    glm::dvec3 untraced(const Branch& branch) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
+
+    glm::dvec3 backdrop(const glm::dvec3& direction) const;
+    glm::dvec3 missed(const Path& path, const glm::dvec3& weight);
+    glm::dvec3 untraced(const Branch& branch, const Path& path) const;
 
     bool compensates(const Optics& m) const;
     Parts compensation(const Surface& surface, double n_v) const;
@@ -218,6 +225,7 @@ class Shader {
     PixelSample sample_;
     RayCounts rays_;
     glm::dvec3 unlit_{0};
+    double through_ = 0;
 };
 
 }  // namespace peelray

@@ -18,6 +18,13 @@ namespace peelray {
 /// they are assembled, which takes long where they are so many.
 void check_room(const Device& device, const Scene& scene);
 
+/// The levels of an environment that a device binds at once: all, or all from some level on.
+struct EnvironmentLevels {
+    size_t first = 0;  ///< texel
+    uint32_t width = 0, height = 0, levels = 0;
+};
+EnvironmentLevels levels_on(const Device& device, const Environment& environment);
+
 /// Uploaded once per scene and environment; pose() moves it. Throws Error when the device has no room.
 class GpuScene {
   public:
@@ -77,7 +84,7 @@ class GpuScene {
     MediaPieces media_pieces_;
     std::vector<GpuLight> environment_lights_;
     glm::uvec2 env_size_{0};
-    uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0;
+    uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0, blurred_first_ = 0;
     bool env_is_image_ = false;
     float env_texels_ = 0;
     float sun_cosine_ = 2, rough_limit_ = 1e30f;

@@ -39,7 +39,7 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                   unlit()},
                  AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, last,
                                   last && post_passes_.empty(), scale_of(settings), 1 / float(settings.spp),
-                                  uint32_t(settings.tonemap)},
+                                  uint32_t(settings.tonemap), settings.backdrop.is_transparent()},
                  groups_for(p.capacity, 64));
 }
 
@@ -47,16 +47,18 @@ bool PictureOutput::record_post(Commands& commands, const PictureSettings& setti
     if (post_passes_.empty()) return false;
     for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
     const uint64_t pixels = pixels_of(settings);
-    commands.run(
-        device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
-        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap)},
-        groups_for(pixels, 64));
+    commands.run(device_.pass("encode", {{"has_unlit", has_unlit_}}),
+                 {{"picture", picture_}, {"encoded", encoded_}, unlit()},
+                 EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap),
+                              settings.backdrop.is_transparent()},
+                 groups_for(pixels, 64));
     return true;
 }
 
 void PictureOutput::download(Commands& commands, const PictureSettings& settings, Picture& out) const {
     out.width = settings.width;
     out.height = settings.height;
+    out.transparent = settings.backdrop.is_transparent();
     out.radiance = commands.download<glm::vec4>(picture_, pixels_of(settings));
     for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
     out.encoded = commands.download<uint32_t>(encoded_, pixels_of(settings));

@@ -111,6 +111,7 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
         renderer_.reset();
         device().reset_peak();
         check_room(*device_, scene_.scene());
+        note_environment();
         renderer_ = std::make_unique<Renderer>(*device_, scene_.scene(), scene_.moment(), scene_.assembly(),
                                                scene_.environment());
         kind_ = kind;
@@ -119,6 +120,16 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     if (posed_ != scene_.time()) renderer_->pose(scene_.moment());
     posed_ = scene_.time();
     return *renderer_;
+}
+
+/// Says so, once, where the device shows less of the environment map than there is.
+void Workspace::note_environment() {
+    const Environment& environment = scene_.environment();
+    const EnvironmentLevels shown = levels_on(*device_, environment);
+    if (shown.first == 0 || std::exchange(noted_.environment, true)) return;
+    note(notes_, fmt::format("the device '{}' binds {}x{} texels of the environment map at once: those of {}x{} are "
+                             "reduced to them",
+                             device_->info().name, shown.width, shown.height, environment.width, environment.height));
 }
 
 /// Once for all pictures; of too little room once for each hit test that is left.
