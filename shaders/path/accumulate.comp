@@ -36,7 +36,8 @@ void main() {
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
     const uint at = pixel.y * frame[0].width + pixel.x;
-    const PathNode node = nodes[i];
+    PathNode node = nodes[i];
+    if ((node.flags & NODE_CATCHER) != 0u) node = caughtNode(i, node);
     const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;

@@ -67,8 +67,9 @@ struct Frame {
     uint backdrop;        ///< BACKDROP_*
     uint backdrop_first;  ///< of the blurred picture, among the environment's texels
     vec3 backdrop_color;
+    uint all_lights;  ///< with those that stand for a part of an image that is sampled, behind the others
 };
-SHARED_SIZE(Frame, 372);
+SHARED_SIZE(Frame, 376);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -35,7 +35,9 @@ struct PathNode {
     uint flags;        ///< NODE_*, and how many entries are its own
 };
 SHARED_SIZE(PathNode, 20);
-#define NODE_LIGHTS 0x07ffffffu
+#define NODE_LIGHTS 0x01ffffffu
+#define NODE_SHARE 0x02000000u     // of a NODE_CATCHER: its light is the share of the backdrop's that it leaves
+#define NODE_CATCHER 0x04000000u   // its light is what it leaves of what is behind it; of its first child only a surface counts, and hides that
 #define NODE_BACKDROP 0x08000000u  // first_light is a float: the share of the backdrop's light that gets here; it has no lights
 #define NODE_DISPERSED 0x10000000u // its second child is red's, the next two green's and blue's
 #define NODE_UNLIT 0x20000000u     // its radiance is a colour that a display is to show as it is

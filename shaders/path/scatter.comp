@@ -311,6 +311,7 @@ struct Scattering {
     MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
+    vec3 light_share;  ///< of a shadow catcher: what is behind it over its light
 };
 
 /// The ray that thread `i` follows and what it hit; false: none.
@@ -342,6 +343,50 @@ Interface mediaAround(uint i, float t, uint channel, inout Scattering c, out vec
     return is_wall ? mediaInterface(wall, channel) : interfaceInAir(materialOf(c.surface), c.surface.front, channel);
 }
 
+/// Is a ray to follow that tells whether a shadow catcher sees the sky? Where the environment is sampled, too: directions drawn by its
+/// brightness would make the share of light that arrives noisy even where all does.
+bool catchesSky() { return (frame[0].effects & (env_sampled ? EFFECT_AMBIENT | EFFECT_SHADOW : EFFECT_AMBIENT)) != 0u; }
+
+/// A surface that is to show nothing but shadows leaves of what is behind it the share of its light that arrives: of all lamps, also those
+/// that stand for a part of a sampled image, and of the sky. Its lights are in units of what is behind it over all light.
+void catchShadows(Ray ray, RayState state, Material m, inout Scattering c, out uint sky_rays) {
+    const bool open = frame[0].backdrop == BACKDROP_NONE && isStraight(state.medium, params.level);
+    const vec3 view = -ray.direction, behind = open ? vec3(1) : missRadiance(ray.direction, state.medium, params.level, skyAlong(ray, state));
+    const Shade shade = shadeOf(c.surface, m, view);
+    vec3 all, below, light = vec3(0);
+    skyLight(c.surface, m, shade, view, all, below);
+    sky_rays = catchesSky() && all != vec3(0) ? 1u : 0u;
+    if (sky_rays == 0u) light = all;
+    c.light_rays = sky_rays;
+    for (uint k = 0u; k < frame[0].all_lights; k++) {
+        vec3 direction;
+        const vec3 arriving = arrivingLight(k, c.surface, m, shade, view, c.from, state.seed, direction);
+        all += arriving;
+        if ((frame[0].effects & EFFECT_SHADOW) == 0u)
+            light += arriving;
+        else if (arriving != vec3(0))
+            c.light_rays++;
+    }
+    c.light_share = mix(behind / max(all, vec3(1e-30)), vec3(0), lessThanEqual(all, vec3(0)));
+    c.node.radiance = mix(light * c.light_share, behind, lessThanEqual(all, vec3(0)));
+    c.node.flags = NODE_CATCHER | (open ? NODE_SHARE : 0u);
+}
+
+/// Puts the shadow rays that catchShadows() counted into the queue from `slot` on.
+void emitCaught(uint slot, Surface s, vec3 view, vec3 share, MediaStack before, SurfaceId from, uint seed) {
+    const Material m = materialOf(s);
+    const Shade shade = shadeOf(s, m, view);
+    vec3 sky, below;
+    skyLight(s, m, shade, view, sky, below);
+    if (catchesSky() && sky != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, sky * share);
+    if ((frame[0].effects & EFFECT_SHADOW) == 0u) return;
+    for (uint k = 0u; k < frame[0].all_lights; k++) {
+        vec3 direction;
+        const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
+        if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, false), before, from, light * share);
+    }
+}
+
 /// Is it what the camera sees of the backdrop through blended surfaces that are not followed any further?
 bool passesUntraced(Branch second) { return blended && !second.traced && largest(second.weight) > 0.0 && seesBackdrop(second.medium, params.level + 1u); }
 
@@ -364,12 +409,15 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, emission, c.reflection, c.refraction);
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
-    // What is not traced sees the environment.
-    if (!c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
-    if (!c.refraction.traced) c.node.radiance += passesUntraced(c.refraction) ? c.refraction.weight * backdropRadiance(c.refraction.direction) : untracedLight(c.refraction);
-    uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
-    if ((m.flags & MATERIAL_UNLIT) != 0u) {
+    const bool catches = catching && (m.flags & MATERIAL_CATCHER) != 0u;
+    // What is not traced sees the environment.
+    if (!catches && !c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
+    if (!catches && !c.refraction.traced) c.node.radiance += passesUntraced(c.refraction) ? c.refraction.weight * backdropRadiance(c.refraction.direction) : untracedLight(c.refraction);
+    uint sky_rays = 0u;
+    if (catches) {
+        catchShadows(ray, state, m, c, sky_rays);
+    } else if ((m.flags & MATERIAL_UNLIT) != 0u) {
         c.node.flags |= NODE_UNLIT;
     } else if (!ignoresLight(c.surface, m)) {
         const Shade shade = shadeOf(c.surface, m, -ray.direction);
@@ -377,6 +425,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
         c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
     }
     c.node.radiance *= c.lost;
+    if (catching) c.light_share *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
@@ -457,8 +506,11 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
-                       c.before, c.behind, c.from, state.seed);
+            if (catching && (c.node.flags & NODE_CATCHER) != 0u)
+                emitCaught(c.node.first_light, c.surface, -ray.direction, c.light_share, c.before, c.from, state.seed);
+            else
+                emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
+                           c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -19,9 +19,9 @@ namespace setting {
 inline constexpr Setting animation{"animation"}, background{"background"}, batch{"batch"}, block{"block"},
     bounces{"bounces"}, builder{"builder"}, camera{"camera"}, depth{"depth"}, device{"device"},
     double_sided{"double-sided"}, effects{"effects"}, env_visible{"env-visible"}, eye{"eye"}, fov{"fov"}, gi{"gi"},
-    hit{"hit"}, ldc{"ldc"}, look{"look"}, routing{"routing"}, size{"size"}, spp{"spp"}, time{"time"},
-    tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
-    variant{"variant"}, visibility{"visibility"};
+    hit{"hit"}, ldc{"ldc"}, look{"look"}, shadow_catcher{"shadow-catcher"}, routing{"routing"}, size{"size"},
+    spp{"spp"}, time{"time"}, tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"},
+    validate{"validate"}, variant{"variant"}, visibility{"visibility"};
 }  // namespace setting
 
 /// Around the name of a setting in the text of an Error. A front end that prints the text replaces both.

@@ -220,7 +220,8 @@ void PathTracer::Impl::pixel(Picture& picture, const RenderContext& context, con
         // One bad number must not poison a pixel.
         bool usable = true;
         for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
-        const double alpha = s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit();
+        const double alpha =
+            s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit() && !shader.catches();
         sum += glm::dvec4(usable ? radiance : glm::dvec3(0), alpha);
         if (usable) unlit += shader.unlit();
         if (s.aovs && sample == 0 && hit.hit()) {
@@ -275,6 +276,7 @@ Picture PathTracer::render(const PictureSettings& settings, const std::function<
                                 impl_->albedos,
                                 impl_->surroundings,
                                 impl_->lights_for(settings),
+                                impl_->lights,
                                 impl_->emitters,
                                 impl_->rough_limit_for(settings),
                                 impl_->media,

@@ -30,6 +30,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     path.media = meeting.before;
     path.cone.width = width;  // at the hit
     const Scattered scattered = scatter(surface, path, meeting);
+    if (surface.optics.catcher) return kept * caught(surface, path, meeting, scattered.reflection);
     glm::dvec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
@@ -82,6 +83,12 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
         if (branch.passes && path.is_straight()) through_ += luminance(path.weight * branch.weight);
         return untraced(branch, path);
     }
+    const Path next = next_path(branch, surface, path, triangle, which);
+    return branch.weight * radiance(next, hit(next));
+}
+
+Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                               uint32_t which) {
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;
@@ -96,7 +103,27 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.scattered = path.scattered + (which == 2);
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
-    return branch.weight * radiance(next, hit(next));
+    return next;
+}
+
+/// What a surface shows that holds nothing but shadows and mirror images: of what is behind it the share of its light
+/// that arrives, less what mirror images cover, and these.
+glm::dvec3 Shader::caught(const Surface& s, const Path& path, const Meeting& meeting, const Branch& reflection) {
+    if (path.level == 0) catches_ = true;
+    const uint32_t triangle = meeting.hit.triangle;
+    const Seen at_point = this->seen(s, path);
+    glm::dvec3 left = left_by_shadows({s, triangle, path, at_point, path.media}), mirrored(0);
+    rays_.cut_reflection += is_cut(reflection, path);
+    if (reflection.traced) {
+        rays_.reflection++;
+        const Path next = next_path(reflection, s, path, triangle, 0);
+        const Meeting seen = hit(next);
+        if (seen.hit.hit()) {
+            mirrored = reflection.weight * radiance(next, seen);
+            left *= 1.0 - reflection.weight;
+        }
+    }
+    return mirrored + left * missed(path, path.weight * left);
 }
 
 /// What the camera sees where nothing is before it.

@@ -24,6 +24,7 @@ struct RenderContext {
     const Albedos& albedos;
     const Surroundings& surroundings;
     std::span<const Light> lights;
+    std::span<const Light> all_lights;  ///< with those that stand for a part of an image that is sampled
     const EmitterList& emitters;
     double rough_limit;  ///< radiance that rays after a rough surface see of the environment at most
     const MediaRanks& media;
@@ -86,6 +87,8 @@ class Shader {
     const glm::dvec3& unlit() const { return unlit_; }
     /// Share of the backdrop's light that comes to the camera.
     double through() const { return through_; }
+    /// Does the camera see a surface that is not to be seen itself?
+    bool catches() const { return catches_; }
 
   private:
     struct Branch {
@@ -168,6 +171,9 @@ class Shader {
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
 
+    static Path next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                          uint32_t which);
+    glm::dvec3 caught(const Surface& surface, const Path& path, const Meeting& meeting, const Branch& reflection);
     glm::dvec3 backdrop(const glm::dvec3& direction) const;
     glm::dvec3 missed(const Path& path, const glm::dvec3& weight);
     glm::dvec3 untraced(const Branch& branch, const Path& path) const;
@@ -201,6 +207,7 @@ class Shader {
     };
     static BothSides scattered(const Lit& at);
     glm::dvec3 sky_light(const Lit& at);
+    glm::dvec3 left_by_shadows(const Lit& at);
     double environment_share(const glm::dvec3& direction, double density) const;
     double environment_blur(const Cone& cone, double density) const;
     static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
@@ -226,6 +233,7 @@ class Shader {
     RayCounts rays_;
     glm::dvec3 unlit_{0};
     double through_ = 0;
+    bool catches_ = false;
 };
 
 }  // namespace peelray

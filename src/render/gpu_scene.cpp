@@ -228,6 +228,7 @@ void GpuScene::describe(Frame& frame, bool env_sampled) const {
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;
     frame.backdrop_first = blurred_first_;
+    frame.all_lights = uint32_t(light_list.size());
     frame.sun_cosine = sun_cosine_;
     frame.rough_limit = env_sampled && env_is_image_ ? std::numeric_limits<float>::max() : rough_limit_;
     frame.env_quads = env_quads_;

@@ -292,6 +292,7 @@ struct EffectArguments {
     uint32_t bounces = 4, gi = 0, spp = 1, seed = 0;
     std::optional<MaterialOverride> material;
     bool floor = false;
+    bool shadow_catcher = false;
     bool no_energy_compensation = false;
 };
 
@@ -332,6 +333,12 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});
+    add_setting(
+        list, a.shadow_catcher,
+        {.name = "shadow-catcher",
+         .group = group,
+         .help = "put the scene on a floor that shows nothing but shadows and mirror images, over the "
+                 "background or, with --background transparent, in the alpha channel; not for --tracer cubemap"});
     add_setting(list, a.no_energy_compensation,
                 {.name = "no-energy-compensation",
                  .group = group,

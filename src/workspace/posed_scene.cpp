@@ -51,7 +51,8 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
         if (light.kind != Light::Kind::directional) light.radius = settings.light_radius;
     if (settings.material) override_materials(*scene, *settings.material, framed_);
     bounds_ = peelray::bounds(*scene, at_rest(*scene));
-    const Box shown = settings.floor ? add_floor(*scene, framed_) : framed_;
+    const Box shown =
+        settings.floor || settings.shadow_catcher ? add_floor(*scene, framed_, settings.shadow_catcher) : framed_;
     bounds_.add(shown.lower);
     bounds_.add(shown.upper);
     scene_ = std::move(scene);

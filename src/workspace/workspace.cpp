@@ -29,6 +29,9 @@ std::string Workspace::renderer_name(Tracer tracer) {
 }
 
 void Workspace::check(Tracer tracer) {
+    if (tracer == Tracer::cubemap && settings_.shadow_catcher)
+        fail("{} cubemap has no {}: use {} ldc, khr or reference", setting::tracer, setting::shadow_catcher,
+             setting::tracer);
     if (tracer == Tracer::khr) device().check_ray_tracing();
 }
 
@@ -47,6 +50,7 @@ MadePicture Workspace::render(const Shot& shot, const Progress& progress) {
 }
 
 MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const Progress& progress) {
+    check(settings.tracer);
     if (shot.time) scene_.move_to(*shot.time);
     settings.camera = turned(scene_.camera(), shot.turn);
     settings.bounds = scene_.bounds();
@@ -61,6 +65,7 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
     MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, report)
                                                             : render_on_device(settings, report);
+    note_uncaught(settings);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
     const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
@@ -120,6 +125,16 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     if (posed_ != scene_.time()) renderer_->pose(scene_.moment());
     posed_ = scene_.time();
     return *renderer_;
+}
+
+/// Says so, once, where a floor that is there for shadows can have none.
+void Workspace::note_uncaught(const PictureSettings& settings) {
+    const bool lamps = !scene_.moment().lights.empty() || !scene_.environment().lights.empty();
+    const bool sky = settings.ambient || (settings.env_mode == EnvironmentMode::sampled && settings.shadow);
+    if (!settings_.shadow_catcher || sky || (lamps && settings.shadow)) return;
+    if (std::exchange(noted_.uncaught, true)) return;
+    note(notes_, fmt::format("nothing that casts shadows lights the floor of {}: {}", setting::shadow_catcher,
+                             "add ambient or shadow to the effects, or choose an environment with a sun"));
 }
 
 /// Says so, once, where the device shows less of the environment map than there is.

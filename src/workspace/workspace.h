@@ -71,6 +71,7 @@ class Workspace {
     MadePicture in_world(MadePicture made) const;
     void note_cubes(const RenderStats& stats);
     void note_environment();
+    void note_uncaught(const PictureSettings& settings);
     MadePicture render_on_device(const RenderSettings& settings, const Progress& progress);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 
@@ -91,6 +92,7 @@ class Workspace {
     struct Noted {
         bool ambient = false;      ///< that a tracer has none
         bool environment = false;  ///< that it shows less of the map than there is
+        bool uncaught = false;     ///< that no shadows fall on a floor that is there for them
         bool tolerance = false;    ///< that it is too small
         bool culled = false;       ///< that the camera is behind single-sided faces
         bool cut = false;          ///< that rays end too early

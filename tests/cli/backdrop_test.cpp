@@ -151,6 +151,31 @@ TEST_F(Backdrops, RotationAndIntensity) {
     }
 }
 
+TEST_F(Backdrops, ShadowCatchers) {
+    for (const std::string tracer : {"ldc", "reference"}) {
+        SCOPED_TRACE(tracer);
+        const Outcome done = render(
+            in("cube.obj"),
+            {"--sky", "--shadow-catcher", "--background", "transparent", "--tracer", tracer, "--fov", "60"}, "a.exr");
+        expect_done(done, {"a.exr"});
+        EXPECT_EQ(done.err.find("casts shadows"), std::string::npos) << done.err;
+        int shadow = 0, mirrored = 0, clear = 0, covered = 0;
+        for (const glm::vec4& p : read_hdr(out("a.exr")).pixels) {
+            const bool black = glm::vec3(p) == glm::vec3(0);
+            (p.w == 0 ? clear : p.w == 1 ? covered : black ? shadow : mirrored)++;
+        }
+        EXPECT_GT(clear, 500);
+        EXPECT_GT(covered, 100);
+        EXPECT_GT(shadow, 50);
+        EXPECT_GT(mirrored, 50);
+    }
+    const Outcome studio = render(in("cube.obj"), {"--shadow-catcher", "--env-mode", "open"}, "a.exr");
+    EXPECT_NE(studio.err.find("nothing that casts shadows lights the floor of --shadow-catcher"), std::string::npos)
+        << studio.err;
+    std::filesystem::remove(out("a.exr"));
+    expect_wrong({"--shadow-catcher", "--tracer", "cubemap"}, "--tracer cubemap has no --shadow-catcher");
+}
+
 TEST_F(Backdrops, WhatContradictsItselfIsRefused) {
     expect_wrong({"--env-rotation", "nan"}, "finite");
     expect_wrong({"--env-rotation", "inf"}, "finite");

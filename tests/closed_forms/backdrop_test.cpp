@@ -10,10 +10,10 @@ namespace {
 
 using BackdropTest = PictureTest;
 
-const Camera kFront = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
-const glm::dvec3 kColor(0.1f, 0.2f, 0.3f), kRed(0.9f, 0.1f, 0), kGreen(0, 0.8f, 0.1f);
+const Camera kFrontView = orthographic({0, 0, 4}, {0, 0, 0}, 1.8f);
+const glm::dvec3 kBackdropColor(0.1f, 0.2f, 0.3f), kSheetRed(0.9f, 0.1f, 0), kSheetGreen(0, 0.8f, 0.1f);
 
-Material sheet(const glm::vec3& color, float alpha) {
+Material sheet_of(const glm::vec3& color, float alpha) {
     Material m = unlit(color);
     m.alpha = alpha;
     m.blended = true;
@@ -21,45 +21,45 @@ Material sheet(const glm::vec3& color, float alpha) {
 }
 
 /// Somewhere the camera never looks: a scene needs a triangle.
-Stage empty_stage() {
+Stage bare_stage() {
     Stage stage;
     stage.add(faces({{{311, -977, 153}, {311.1f, -977, 153}, {311, -977, 153.1f}}}), unlit({9, 0, 9}));
     return stage;
 }
 
 /// Half the picture's width, left of the middle.
-Primitive left_half(float z) {
+Primitive left_half_at(float z) {
     return parallelogram({-3, -3, z}, {3, 0, 0}, {0, 6, 0});
 }
 
-RenderSettings settings_with(Backdrop::Kind kind, const Camera& camera = kFront, uint32_t size = 16) {
+RenderSettings backdrop_settings(Backdrop::Kind kind, const Camera& camera = kFrontView, uint32_t size = 16) {
     RenderSettings settings = settings_for(camera, size);
-    settings.backdrop = {kind, kind == Backdrop::Kind::color ? glm::vec3(kColor) : glm::vec3(0)};
+    settings.backdrop = {kind, kind == Backdrop::Kind::color ? glm::vec3(kBackdropColor) : glm::vec3(0)};
     return settings;
 }
 
 TEST_F(BackdropTest, CamerasSeeTheColorAndMirrorsTheEnvironment) {
     Stage stage;
-    stage.add(left_half(0), plane_mirror());
-    const Picture picture = render(stage, white, settings_with(Backdrop::Kind::color));
+    stage.add(left_half_at(0), plane_mirror());
+    const Picture picture = render(stage, white, backdrop_settings(Backdrop::Kind::color));
     EXPECT_TRUE(near(radiance_at(picture, 3, 8), glm::dvec3(1), 1e-5));
-    EXPECT_TRUE(near(radiance_at(picture, 12, 8), kColor, 1e-6));
+    EXPECT_TRUE(near(radiance_at(picture, 12, 8), kBackdropColor, 1e-6));
     EXPECT_FALSE(picture.transparent);
     EXPECT_EQ(picture.encoded.front() >> 24, 255u);
     stage.scene.materials[0] = thin_glass();
     EXPECT_TRUE(
-        near(radiance_at(render(stage, white, settings_with(Backdrop::Kind::color)), 3, 8), glm::dvec3(1), 1e-5))
+        near(radiance_at(render(stage, white, backdrop_settings(Backdrop::Kind::color)), 3, 8), glm::dvec3(1), 1e-5))
         << "glass shows the environment";
 }
 
 TEST_F(BackdropTest, BlendedSurfacesLetItThrough) {
     Stage stage;
-    stage.add(left_half(0), sheet(kRed, 0.25f));
+    stage.add(left_half_at(0), sheet_of(kSheetRed, 0.25f));
     for (const bool traced : {true, false}) {
-        RenderSettings settings = settings_with(Backdrop::Kind::color);
+        RenderSettings settings = backdrop_settings(Backdrop::Kind::color);
         settings.refraction = traced;
         const Picture picture = render(stage, white, settings);
-        EXPECT_TRUE(near(radiance_at(picture, 3, 8), 0.25 * kRed + 0.75 * kColor, 1e-5)) << traced;
+        EXPECT_TRUE(near(radiance_at(picture, 3, 8), 0.25 * kSheetRed + 0.75 * kBackdropColor, 1e-5)) << traced;
     }
 }
 
@@ -71,19 +71,19 @@ glm::ivec4 bytes_at(const Picture& picture, uint32_t x, uint32_t y) {
 
 TEST_F(BackdropTest, AlphaIsWhatCoversTheBackdrop) {
     Stage stage;
-    stage.add(left_half(0), sheet(kRed, 0.25f));
+    stage.add(left_half_at(0), sheet_of(kSheetRed, 0.25f));
     for (const bool traced : {true, false}) {
         SCOPED_TRACE(traced);
-        RenderSettings settings = settings_with(Backdrop::Kind::transparent);
+        RenderSettings settings = backdrop_settings(Backdrop::Kind::transparent);
         settings.refraction = settings.reflection = settings.shadow = traced;
         settings.tonemap = Tonemap::none;
         const Picture picture = render(stage, white, settings);
         EXPECT_TRUE(picture.transparent);
-        EXPECT_TRUE(near(radiance_at(picture, 3, 8), 0.25 * kRed, 1e-5)) << "premultiplied";
+        EXPECT_TRUE(near(radiance_at(picture, 3, 8), 0.25 * kSheetRed, 1e-5)) << "premultiplied";
         EXPECT_NEAR(picture.radiance[8 * 16 + 3].w, 0.25, 1e-5);
         // Straight: the sheet's own colour, of which a quarter is there.
         const glm::ivec4 straight = bytes_at(picture, 3, 8);
-        for (int i = 0; i < 3; i++) EXPECT_NEAR(straight[i], 255 * linear_to_srgb(kRed[i]), 0.6);
+        for (int i = 0; i < 3; i++) EXPECT_NEAR(straight[i], 255 * linear_to_srgb(kSheetRed[i]), 0.6);
         EXPECT_EQ(straight.w, 64);
         EXPECT_EQ(picture.radiance[8 * 16 + 12], glm::vec4(0));
         EXPECT_EQ(bytes_at(picture, 12, 8), glm::ivec4(0));
@@ -92,8 +92,8 @@ TEST_F(BackdropTest, AlphaIsWhatCoversTheBackdrop) {
 
 TEST_F(BackdropTest, SheetsInARowCoverMore) {
     Stage stage;
-    for (int i = 0; i < 12; i++) stage.add(left_half(float(-i) / 8), sheet(kGreen, 0.1f));
-    RenderSettings settings = settings_with(Backdrop::Kind::transparent);
+    for (int i = 0; i < 12; i++) stage.add(left_half_at(float(-i) / 8), sheet_of(kSheetGreen, 0.1f));
+    RenderSettings settings = backdrop_settings(Backdrop::Kind::transparent);
     settings.bounces = 1;  // beyond it and eight sheets nothing is followed
     const Picture picture = render(stage, white, settings);
     EXPECT_NEAR(picture.radiance[8 * 16 + 3].w, 1 - std::pow(0.9, 10), 1e-4);
@@ -106,7 +106,7 @@ TEST_F(BackdropTest, GlassCoversAndEdgesCoverTheirShare) {
     // The edge lies in the picture's ninth column of pixels, 0.3 from its left.
     const float edge = 1.8f * (8.3f / 16 - 0.5f);
     stage.add(parallelogram({-3, -3, 0}, {3 + edge, 0, 0}, {0, 6, 0}), thin_glass());
-    RenderSettings settings = settings_with(Backdrop::Kind::transparent);
+    RenderSettings settings = backdrop_settings(Backdrop::Kind::transparent);
     settings.spp = 16;
     const Picture picture = render(stage, white, settings);
     EXPECT_EQ(picture.radiance[8 * 16 + 3].w, 1) << "what is seen through glass is the environment";
@@ -125,10 +125,10 @@ TEST_F(BackdropTest, TheTransparentPictureOnAColorIsTheOpaqueOne) {
     Stage stage;
     stage.add(sphere({-0.3f, 0, 0}, 0.5f, 16), plane_mirror());
     stage.add(sphere({0.4f, 0.2f, -1}, 0.4f, 16), lambert({0.5f, 0.6f, 0.7f}));
-    stage.add(left_half(1), sheet(kRed, 0.3f));
-    stage.add(parallelogram({-3, -0.2f, 2}, {6, 0, 0}, {0, 0.3f, 0.4f}), sheet(kGreen, 0.6f));
+    stage.add(left_half_at(1), sheet_of(kSheetRed, 0.3f));
+    stage.add(parallelogram({-3, -0.2f, 2}, {6, 0, 0}, {0, 0.3f, 0.4f}), sheet_of(kSheetGreen, 0.6f));
     stage.sun({0.2f, -1, -0.5f});
-    RenderSettings settings = settings_with(Backdrop::Kind::color, kFront, 32);
+    RenderSettings settings = backdrop_settings(Backdrop::Kind::color, kFrontView, 32);
     settings.spp = 4;
     const Picture opaque = render(stage, white, settings);
     settings.backdrop = {Backdrop::Kind::transparent};
@@ -136,7 +136,7 @@ TEST_F(BackdropTest, TheTransparentPictureOnAColorIsTheOpaqueOne) {
     Tally alphas;
     for (glm::vec4& pixel : over.radiance) {
         alphas.add(pixel.w > 0.01f && pixel.w < 0.99f, [] { return std::string("whole"); });
-        pixel += glm::vec4(glm::vec3((1 - double(pixel.w)) * kColor), 0);
+        pixel += glm::vec4(glm::vec3((1 - double(pixel.w)) * kBackdropColor), 0);
     }
     EXPECT_GT(alphas.compared - alphas.wrong, 300u) << "in parts";
     tally(over, opaque, 1e-5).expect(0, 1024);
@@ -154,7 +154,7 @@ TEST_F(BackdropTest, BlurredIsTheMeanAround) {
     }
     for (const glm::vec3& direction : {glm::vec3(0, 0.2f, -1), {1, -0.5f, 0.2f}, {0, -0.3f, 1}}) {
         const Camera camera = perspective({0, 0, 0}, direction, 60);
-        const Picture picture = render(empty_stage(), image, settings_with(Backdrop::Kind::blurred, camera, 24));
+        const Picture picture = render(bare_stage(), image, backdrop_settings(Backdrop::Kind::blurred, camera, 24));
         tally(picture, camera, 2e-3, [&](const ViewRay& ray) {
             return 0.5 + cosines / weights * (light_of(ray.direction) - 0.5);
         }).expect(0, 576);
@@ -163,7 +163,7 @@ TEST_F(BackdropTest, BlurredIsTheMeanAround) {
     Stage stage;
     stage.add(parallelogram({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), plane_mirror());
     const Camera camera = perspective({0, 0, 0}, {0, 0, -1}, 60);
-    tally(render(stage, image, settings_with(Backdrop::Kind::blurred, camera, 24)), camera, 2e-3,
+    tally(render(stage, image, backdrop_settings(Backdrop::Kind::blurred, camera, 24)), camera, 2e-3,
           [](const ViewRay& ray) {
               return light_of({ray.direction.x, ray.direction.y, -ray.direction.z});
           })
@@ -171,7 +171,7 @@ TEST_F(BackdropTest, BlurredIsTheMeanAround) {
 }
 
 /// Counter-clockwise as seen from above: from +x to -z.
-glm::dvec3 turned_by(double degrees, const glm::dvec3& d) {
+glm::dvec3 turned_about_y(double degrees, const glm::dvec3& d) {
     const double angle = degrees * kPi / 180, c = std::cos(angle), s = std::sin(angle);
     return {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
 }
@@ -181,9 +181,9 @@ TEST_F(BackdropTest, TurnedEnvironmentsAreSeenTurned) {
         SCOPED_TRACE(degrees);
         Environment image = direction_image(256);
         rotate(image, degrees);
-        const auto light = [&](const glm::dvec3& d) { return light_of(turned_by(-degrees, d)); };
+        const auto light = [&](const glm::dvec3& d) { return light_of(turned_about_y(-degrees, d)); };
         const Camera camera = perspective({0, 0, 0}, {0.3f, 0.2f, -1}, 90);
-        tally(render(empty_stage(), image, settings_for(camera, 24)), camera, 0.01, [&](const ViewRay& ray) {
+        tally(render(bare_stage(), image, settings_for(camera, 24)), camera, 0.01, [&](const ViewRay& ray) {
             return light(ray.direction);
         }).expect(0, 576);
         Stage stage;
@@ -203,7 +203,7 @@ TEST_F(BackdropTest, ABrightTexelGoesWhereItIsTurnedTo) {
     const auto direction = [](double x) {
         return glm::dvec3(environment_direction(float((x + 0.5) / 64), 12.5f / 32));
     };
-    const glm::dvec3 before = direction(40), after = turned_by(90, before);
+    const glm::dvec3 before = direction(40), after = turned_about_y(90, before);
     EXPECT_TRUE(near(after, direction(40 - 16), 1e-6));
     // Seen in a mirror that stands upright, facing -x.
     Stage stage;
@@ -211,7 +211,7 @@ TEST_F(BackdropTest, ABrightTexelGoesWhereItIsTurnedTo) {
     for (Material& m : stage.scene.materials) m.double_sided = true;
     for (const auto& [to, light] : {std::pair(after, glm::dvec3(5, 4, 3)), {before, glm::dvec3(0)}}) {
         const Camera direct = perspective({0, 0, 0}, glm::vec3(to), 2);
-        EXPECT_TRUE(near(radiance_at(render(empty_stage(), image, settings_for(direct, 9)), 4, 4), light, 1e-2));
+        EXPECT_TRUE(near(radiance_at(render(bare_stage(), image, settings_for(direct, 9)), 4, 4), light, 1e-2));
         const glm::vec3 towards(std::abs(float(to.x)), float(to.y), float(to.z));
         if (to.x > 0) continue;
         const Camera mirrored = perspective({0, 0, 0}, towards, 2);
@@ -234,7 +234,7 @@ TEST_F(BackdropTest, DiffuseLightAndShadowsTurnAlong) {
     Tally result;
     for (size_t i = 0; i < picture.radiance.size(); i++) {
         if (picture.aovs.triangle[i] < 0) continue;
-        const glm::dvec3 n = turned_by(-37.5, glm::dvec3(picture.aovs.normal[i])), want = 0.5 + 0.4 * 2 / 3 * n,
+        const glm::dvec3 n = turned_about_y(-37.5, glm::dvec3(picture.aovs.normal[i])), want = 0.5 + 0.4 * 2 / 3 * n,
                          got = glm::dvec3(picture.radiance[i]);
         result.add(near(got, want, 0.01), [&] { return text(got) + ", expected " + text(want); });
     }

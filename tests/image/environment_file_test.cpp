@@ -10,10 +10,8 @@ namespace {
 
 using EnvironmentFile = TempFolder;
 
-constexpr float infinite = std::numeric_limits<float>::infinity();
-const float nan = std::numeric_limits<float>::quiet_NaN();
-
 TEST_F(EnvironmentFile, WhatIsNoRadianceIsCountedAndBlack) {
+    const float infinite = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     // Negative channels alone are black, the rest of their texel stays: other primaries make such.
     write_hdr(folder / "a.exr",
               Image{3,
