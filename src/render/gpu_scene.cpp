@@ -125,12 +125,17 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     }
     for (const Light& light : env.lights) environment_lights_.push_back(gpu_light(light));
     upload_media(commands);
+    upload_lookups(commands, env, emitter_table(emitters_of(scene, assembly)));
+    pose(commands, scene, moment);
+}
+
+/// Tables, environment, its distribution and emitters, one behind the other.
+void GpuScene::upload_lookups(Commands& commands, const Environment& env, const std::vector<glm::vec4>& emitters) {
     static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
-    const EnvironmentLevels shown = levels_on(device, env);
+    const EnvironmentLevels shown = levels_on(device_, env);
     const std::span<const glm::vec4> texels = std::span(env.texels).subspan(shown.first);
-    const std::vector<glm::vec4> emitters = emitter_table(emitters_of(scene, assembly));
     lookups =
-        Buffer(device, "tables and environment map",
+        Buffer(device_, "tables and environment map",
                sizeof kTables + (texels.size() + env.distribution.quads.size() + emitters.size()) * sizeof(glm::vec4));
     commands.upload(lookups, std::span<const float>(kTables[0], sizeof kTables / sizeof(float)));
     commands.upload(lookups, texels, sizeof kTables);
@@ -153,7 +158,6 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     sun_direction_ = env.sun_direction;
     sun_radiance_ = env.sun_radiance;
     irradiance_ = env.irradiance;
-    pose(commands, scene, moment);
 }
 
 uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& moment) {

@@ -71,6 +71,7 @@ class GpuScene {
     uint32_t emitters() const { return emitters_; }
 
   private:
+    void upload_lookups(Commands& commands, const Environment& env, const std::vector<glm::vec4>& emitters);
     void upload_media(Commands& commands);
     void upload_lights(Commands& commands, const std::vector<Light>& own);
 

@@ -103,17 +103,8 @@ struct LightArguments {
     }
 };
 
-inline void add_light(SettingList& list, LightArguments& a) {
-    const std::string group = "Light";
-    add_setting(
-        list, a.env,
-        {.name = "env", .group = group, .help = "environment map, equirectangular .hdr or .exr", .form = "FILE"});
-    add_setting(list, a.sky,
-                {.name = "sky",
-                 .group = group,
-                 .help = "procedural sky with a sun; default: a studio for a file without lights, this sky for a "
-                         "built-in scene without, a dim grey for a scene with lights",
-                 .excludes = {"env"}});
+/// The environment, whichever it is, and what is seen of it.
+inline void add_environment(SettingList& list, LightArguments& a, const std::string& group) {
     add_setting(
         list, a.background,
         {.name = "background",
@@ -147,6 +138,20 @@ inline void add_light(SettingList& list, LightArguments& a) {
                          "--background (black where there is none), or a blurred picture of it; mirrors, glass and "
                          "rough surfaces see all of it",
                  .preset = "yes, or no with --background beside --env or --sky"});
+}
+
+inline void add_light(SettingList& list, LightArguments& a) {
+    const std::string group = "Light";
+    add_setting(
+        list, a.env,
+        {.name = "env", .group = group, .help = "environment map, equirectangular .hdr or .exr", .form = "FILE"});
+    add_setting(list, a.sky,
+                {.name = "sky",
+                 .group = group,
+                 .help = "procedural sky with a sun; default: a studio for a file without lights, this sky for a "
+                         "built-in scene without, a dim grey for a scene with lights",
+                 .excludes = {"env"}});
+    add_environment(list, a, group);
     add_setting(list, a.env_mode,
                 {.name = "env-mode",
                  .group = group,
