@@ -54,7 +54,7 @@ const bool textured = (material_kinds & MATERIALS_TEXTURED) != 0u, specified = (
            coated = (material_kinds & MATERIALS_COATED) != 0u, sheened = (material_kinds & MATERIALS_SHEEN) != 0u,
            filmed = (material_kinds & MATERIALS_FILMED) != 0u, stretched = (material_kinds & MATERIALS_STRETCHED) != 0u,
            dispersive = (material_kinds & MATERIALS_DISPERSIVE) != 0u, seeping = (material_kinds & MATERIALS_SEEPING) != 0u,
-           frosted = (material_kinds & MATERIALS_FROSTED) != 0u;
+           frosted = (material_kinds & MATERIALS_FROSTED) != 0u, catching = (material_kinds & MATERIALS_CATCHING) != 0u;
 
 /// A material at a point; its base colour is the surface's.
 struct Material {

@@ -76,6 +76,7 @@ SHARED_SIZE(GpuMaterial, 272);
 #define MATERIAL_SCHLICK 16u      // reflectance between f0 and f90; else by the index of refraction
 #define MATERIAL_TEXTURED 32u     // by more than a base colour and what TEXTURE_TURNS
 #define MATERIAL_BLENDED 64u      // covers what is behind it by its alpha only
+#define MATERIAL_CATCHER 128u     // shows nothing but shadows and mirror images
 /// Of all materials of a scene:
 #define MATERIALS_TEXTURED 1u   // some have textures beside the base colour's
 #define MATERIALS_SPECIFIED 2u  // some are MATERIAL_SCHLICK
@@ -88,6 +89,7 @@ SHARED_SIZE(GpuMaterial, 272);
 #define MATERIALS_DISPERSIVE 256u // some refract each colour differently
 #define MATERIALS_SEEPING 512u    // some let diffuse light through
 #define MATERIALS_FROSTED 1024u   // some are rough glass
+#define MATERIALS_CATCHING 2048u  // some are MATERIAL_CATCHER
 
 /// A texture as materials use it.
 struct GpuTexture {

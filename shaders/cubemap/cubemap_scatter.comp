@@ -21,6 +21,7 @@ BUFFER(readonly, 18, uvec2, probes)
 #include "cubemap/cubemap.glsl"
 #include "path/frame.glsl"
 #include "path/branches.glsl"
+#include "path/backdrop.glsl"
 
 GpuObject object;  // of this thread's hit
 
@@ -47,6 +48,13 @@ vec3 seenAlong(vec3 direction, bool sees_sun, float roughness) {
     return near.rgb + (1.0 - near.a) * far;
 }
 
+/// What the camera sees straight through a blended surface; `through`: share of the backdrop's light in it, where the picture is transparent.
+vec3 seenThrough(Branch branch, out float through) {
+    const vec4 near = branch.traced ? cubeRoughLookup(object.probe, object.face, object.levels, branch.direction, 0.0) : vec4(0);
+    through = frame[0].backdrop == BACKDROP_NONE ? luminance(branch.weight) * (1.0 - near.a) : 0.0;
+    return branch.weight * (near.rgb + (1.0 - near.a) * backdropRadiance(branch.direction));
+}
+
 vec3 seen(Branch branch, float roughness) {
     if (!branch.traced) return untracedLight(branch);
     const bool sees_sun = (branch.medium & RAY_SEES_SUN) != 0u;
@@ -64,25 +72,25 @@ void main() {
     const Ray ray = rays[i];
     const RayState state = states[i];
     const Hit hit = hits[i];
-    vec3 radiance;
-    uint flags = 0u;
-    if (hit.triangle == NO_TRIANGLE) {
-        radiance = skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u);
-    } else {
+    PathNode node = missNode(ray.direction, state.medium, 0u, skyRadiance(ray.direction, (state.medium & RAY_SEES_SUN) != 0u), vec3(1));
+    if (hit.triangle != NO_TRIANGLE) {
         object = objects[instances[hit.instance].info.first_object + triangle_objects[hit.triangle]];
         const vec2 cone = coneAt(unpackCone(state.cone), hit.t);
         const Surface s = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction, cone.x);
         const Material m = materialOf(s);
-        flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
+        node.flags = NODE_SURFACE | ((m.flags & MATERIAL_UNLIT) != 0u ? NODE_UNLIT : 0u);
         Branch reflection, refraction;
-        radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, 1.0, reflection, refraction);
-        radiance += seen(reflection, reflection.blur);
+        node.radiance = scatterSurface(s, ray.direction, interfaceInAir(m, s.front, 0u), state, cone, 1.0, reflection, refraction);
+        node.radiance += seen(reflection, reflection.blur);
         // One interface, as rasterisers do: bent where the light enters, dimmed by the thickness that the material
         // states, and blurred less the less it bends (the glTF Sample Viewer's rule).
         const bool coat = isCoat(refraction);
         const float bent = blended && s.alpha < 1.0 ? 0.0 : m.roughness * clamp(2.0 * m.ior - 2.0, 0.0, 1.0);
         if (refraction.traced && !coat && (m.flags & MATERIAL_THIN) == 0u && s.front) refraction.weight *= exp(-m.absorption * min(m.thickness, object.thickness));
-        radiance += seen(refraction, coat ? m.coat_roughness : bent);
+        float through = 0.0;
+        node.radiance += seesBackdrop(refraction.medium, 1u) ? seenThrough(refraction, through) : seen(refraction, coat ? m.coat_roughness : bent);
+        node.first_light = floatBitsToUint(through);
+        if (through > 0.0) node.flags |= NODE_BACKDROP;
     }
-    nodes[i] = PathNode(radiance, 0u, flags);
+    nodes[i] = node;
 }

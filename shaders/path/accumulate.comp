@@ -39,14 +39,16 @@ void main() {
     const uvec2 pixel = recordPixel(i, params.first_row);
     if (pixel.x >= frame[0].width || pixel.y >= frame[0].height) return;
     const uint at = pixel.y * frame[0].width + pixel.x;
-    const PathNode node = nodes[i];
+    PathNode node = nodes[i];
+    if ((node.flags & NODE_CATCHER) != 0u) node = caughtNode(i, node);
     const vec3 radiance = litRadiance(node) + childrenRadiance(i, node);
     // One bad number must not poison a pixel for good.
     const bool finite = radiance.r < 1e30 && radiance.g < 1e30 && radiance.b < 1e30 && radiance.r >= 0.0 && radiance.g >= 0.0 && radiance.b >= 0.0;
     const float largest = max(radiance.r, max(radiance.g, radiance.b));
     const float kept = largest > params.limit ? params.limit / largest : 1.0;
     const vec3 added = finite ? radiance * kept : vec3(0);
-    vec4 sum = vec4(added, (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0);
+    const float alpha = params.straight != 0u ? 1.0 - min(backdropShare(i, node), 1.0) : (node.flags & NODE_SURFACE) != 0u ? 1.0 : 0.0;
+    vec4 sum = vec4(added, alpha);
     if (params.sample_index > 0u) sum += picture[at];
     picture[at] = sum;
     if (has_moments) addToMoments(at, added);
@@ -57,5 +59,6 @@ void main() {
         if (params.sample_index > 0u) shown += unlit[at];
         unlit[at] = shown;
     }
-    if (params.encodes != 0u) encoded[at] = encode(sum.rgb, has_unlit ? unlitShare(shown, sum.rgb) : shown, params.scale, params.share, params.curve);
+    if (params.encodes != 0u)
+        encoded[at] = encode(sum, has_unlit ? unlitShare(shown, sum.rgb) : shown, params.scale, params.share, params.curve, params.straight != 0u);
 }

@@ -14,8 +14,8 @@ BUFFER(readonly, 2, vec3, unlit)
 void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= params.pixels) return;
-    const vec3 sum = picture[i].rgb;
+    const vec4 sum = picture[i];
     vec3 shown = has_unlit ? unlit[i] : vec3(0);
-    if (has_unlit && params.shares == 0u) shown = unlitShare(shown, sum);
-    encoded[i] = encode(sum, shown, params.scale, params.share, params.curve);
+    if (has_unlit && params.shares == 0u) shown = unlitShare(shown, sum.rgb);
+    encoded[i] = encode(sum, shown, params.scale, params.share, params.curve, params.straight != 0u);
 }

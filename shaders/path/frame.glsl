@@ -166,6 +166,15 @@ vec3 environmentTexel(uint level_offset, uvec2 size, int x, int y) {
     return lookups[TABLES_END + level_offset + row * size.x + column].rgb;
 }
 
+/// A picture among the environment's texels.
+vec3 environmentPicture(vec2 uv, uint offset, uvec2 size) {
+    const vec2 p = uv * vec2(size) - 0.5, f = fract(p);
+    const ivec2 i = ivec2(floor(p));
+    const vec3 top = mix(environmentTexel(offset, size, i.x, i.y), environmentTexel(offset, size, i.x + 1, i.y), f.x);
+    const vec3 bottom = mix(environmentTexel(offset, size, i.x, i.y + 1), environmentTexel(offset, size, i.x + 1, i.y + 1), f.x);
+    return mix(top, bottom, f.y);
+}
+
 vec3 environmentLevel(vec2 uv, uint level) {
     uint offset = 0u;
     uvec2 size = frame[0].env_size;
@@ -173,11 +182,7 @@ vec3 environmentLevel(vec2 uv, uint level) {
         offset += size.x * size.y;
         size = max(size / 2u, uvec2(1));
     }
-    const vec2 p = uv * vec2(size) - 0.5, f = fract(p);
-    const ivec2 i = ivec2(floor(p));
-    const vec3 top = mix(environmentTexel(offset, size, i.x, i.y), environmentTexel(offset, size, i.x + 1, i.y), f.x);
-    const vec3 bottom = mix(environmentTexel(offset, size, i.x, i.y + 1), environmentTexel(offset, size, i.x + 1, i.y + 1), f.x);
-    return mix(top, bottom, f.y);
+    return environmentPicture(uv, offset, size);
 }
 
 /// Radiance of the environment along a unit direction, without the sun's disc; `level`: 0 the finest, at most the last.

@@ -3,6 +3,7 @@
 #define PEELRAY_FRAME_H
 
 #include "common/shared.h"
+#include "path/backdrop_kinds.h"
 
 #ifdef __cplusplus
 namespace peelray {
@@ -65,8 +66,13 @@ struct Frame {
     uint draws;         ///< GpuDraw entries
     uvec2 camera_media;  ///< MediaStack: what the camera is in
     vec2 cone;           ///< of its rays, for one sample (cone.glsl)
+    // What the camera sees where nothing is before it.
+    uint backdrop;        ///< BACKDROP_*
+    uint backdrop_first;  ///< of the blurred picture, among the environment's texels
+    vec3 backdrop_color;
+    uint all_lights;  ///< with those that stand for a part of an image that is sampled, behind the others
 };
-SHARED_SIZE(Frame, 360);
+SHARED_SIZE(Frame, 384);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -15,5 +15,13 @@ void main() {
     const uint i = GLOBAL_INDEX;
     if (queue[QUEUE_OVERFLOW] != 0u || i >= min(params.capacity, queue[params.level])) return;
     const PathNode node = nodes[i];
-    if ((node.flags & NODE_BRANCHES) != 0u) nodes[i].radiance = node.radiance + childrenRadiance(i, node);
+    if ((node.flags & NODE_CATCHER) != 0u) nodes[i] = caughtNode(i, node);
+    if ((node.flags & NODE_CATCHER) != 0u || (node.flags & NODE_BRANCHES) == 0u) return;
+    const float through = backdropShare(i, node);
+    if (through == 0.0) {
+        nodes[i].radiance = node.radiance + childrenRadiance(i, node);
+        return;
+    }
+    // The place of its lights is needed for the share: their light is added here.
+    nodes[i] = PathNode(litRadiance(node) + childrenRadiance(i, node), floatBitsToUint(through), (node.flags & ~NODE_LIGHTS) | NODE_BACKDROP);
 }

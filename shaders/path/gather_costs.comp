@@ -28,7 +28,7 @@ void main() {
         const PathBranches children = branches[i];
         if (children.child0 != NO_CHILD) sum = costSum(sum, next_costs[children.child0]);
         if (children.child2 != NO_CHILD) sum = costSum(sum, next_costs[children.child2]);
-        const uint second = children.child1 == NO_CHILD ? 0u : ((node.flags & NODE_DISPERSED) != 0u ? 3u : 1u);
+        const uint second = children.child1 >= BACKDROP_CHILD ? 0u : ((node.flags & NODE_DISPERSED) != 0u ? 3u : 1u);
         for (uint k = 0u; k < second; k++) sum = costSum(sum, next_costs[children.child1 + k]);
     }
     costs[i] = sum;

@@ -35,7 +35,10 @@ struct PathNode {
     uint flags;        ///< NODE_*, and how many entries are its own
 };
 SHARED_SIZE(PathNode, 20);
-#define NODE_LIGHTS 0x0fffffffu
+#define NODE_LIGHTS 0x01ffffffu
+#define NODE_SHARE 0x02000000u     // of a NODE_CATCHER: its light is the share of the backdrop's that it leaves
+#define NODE_CATCHER 0x04000000u   // its light is what it leaves of what is behind it; of its first child only a surface counts, and hides that
+#define NODE_BACKDROP 0x08000000u  // first_light is a float: the share of the backdrop's light that gets here; it has no lights
 #define NODE_DISPERSED 0x10000000u // its second child is red's, the next two green's and blue's
 #define NODE_UNLIT 0x20000000u     // its radiance is a colour that a display is to show as it is
 #define NODE_SURFACE 0x40000000u   // not the sky
@@ -52,6 +55,7 @@ struct PathBranches {
 };
 SHARED_SIZE(PathBranches, 48);
 #define NO_CHILD 0xffffffffu
+#define BACKDROP_CHILD 0xfffffffeu  // where the picture is transparent: what the camera sees through the node, untraced
 
 /// Counters of a band: queue lengths by level, then rays by kind, then workgroups.
 #define QUEUE_LEVELS 17u
@@ -101,8 +105,9 @@ struct AccumulateParams {
     float share;   ///< 1 / samples
     uint curve;    ///< 0 none, 1 ACES, 2 neutral
     float limit;   ///< to the largest channel of a sample
+    uint straight; ///< 1: with an alpha, which colours are divided by
 };
-SHARED_SIZE(AccumulateParams, 40);
+SHARED_SIZE(AccumulateParams, 44);
 
 struct EncodeParams {
     uint pixels;
@@ -110,8 +115,9 @@ struct EncodeParams {
     float share;  ///< 1 / samples
     uint curve;   ///< 0 none, 1 ACES, 2 neutral
     uint shares;  ///< 1: of unlit colours there are shares, 0: sums
+    uint straight;  ///< 1: with an alpha, which colours are divided by
 };
-SHARED_SIZE(EncodeParams, 20);
+SHARED_SIZE(EncodeParams, 24);
 
 /// Parameters of the ray_setup passes: the box of the scene.
 struct RaySetupParams {

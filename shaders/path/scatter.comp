@@ -42,6 +42,7 @@ BUFFER(writeonly, 31, MediaStack, shadow_media)  // the last: some devices bind 
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #include "path/branches.glsl"
+#include "path/backdrop.glsl"
 #include "path/emitters.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"
@@ -367,6 +368,7 @@ struct Scattering {
     MediaStack before, behind;  ///< media on either side of the surface
     vec3 lost;         ///< share of the light that gets through the medium to where the hit is seen from
     vec3 path_weight;  ///< of the path up to here
+    vec3 light_share;  ///< of a shadow catcher: what is behind it over its light
 };
 
 /// The ray that thread `i` follows and what it hit; false: none.
@@ -398,6 +400,11 @@ Interface mediaAround(uint i, float t, uint channel, inout Scattering c, out vec
     return is_wall ? mediaInterface(wall, channel) : interfaceInAir(materialOf(c.surface), c.surface.front, channel);
 }
 
+#include "path/catcher.glsl"
+
+/// Is it what the camera sees of the backdrop through blended surfaces that are not followed any further?
+bool passesUntraced(Branch second) { return blended && !second.traced && largest(second.weight) > 0.0 && seesBackdrop(second.medium, params.level + 1u); }
+
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
 void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
@@ -417,12 +424,15 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     c.node.radiance = scatterSurface(c.surface, ray.direction, face, state, cone, emission, c.reflection, c.refraction);
     const bool coat = isCoat(c.refraction);
     if (!coat) c.refraction.weight *= beside;
-    // What is not traced sees the environment.
-    if (!c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
-    if (!c.refraction.traced) c.node.radiance += untracedLight(c.refraction);
-    uint sky_rays = 0u;
     const Material m = materialOf(c.surface);
-    if ((m.flags & MATERIAL_UNLIT) != 0u) {
+    const bool catches = catching && (m.flags & MATERIAL_CATCHER) != 0u;
+    // What is not traced sees the environment.
+    if (!catches && !c.reflection.traced) c.node.radiance += untracedLight(c.reflection);
+    if (!catches && !c.refraction.traced) c.node.radiance += passesUntraced(c.refraction) ? c.refraction.weight * backdropRadiance(c.refraction.direction) : untracedLight(c.refraction);
+    uint sky_rays = 0u;
+    if (catches) {
+        catchShadows(ray, state, m, c, sky_rays);
+    } else if ((m.flags & MATERIAL_UNLIT) != 0u) {
         c.node.flags |= NODE_UNLIT;
     } else if (!ignoresLight(c.surface, m)) {
         const Shade shade = shadeOf(c.surface, m, -ray.direction);
@@ -430,6 +440,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
         c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
     }
     c.node.radiance *= c.lost;
+    if (catching) c.light_share *= c.lost;
     if (isCut(c.reflection, state, false)) atomicAdd(group_cut[0], 1u);
     if (isCut(c.refraction, state, c.surface.alpha < 1.0)) atomicAdd(group_cut[coat ? 0 : 1], 1u);
     if (c.reflection.traced) c.reflection_slot = atomicAdd(group_counts[0], 1u);
@@ -473,6 +484,7 @@ void emitBranches(uint i, Scattering c, RayState state) {
         emitRay(children.child2, c.diffuse, back ? c.behind : c.before, c.surface, c.from, c.path_weight * c.diffuse.weight, branchSeed(state.seed, 2u, params.level),
                 state.scattered + 1u);
     }
+    if (frame[0].backdrop == BACKDROP_NONE && passesUntraced(c.refraction)) children.child1 = BACKDROP_CHILD;
     branches[i] = children;
 }
 
@@ -492,8 +504,7 @@ void main() {
     c.before = c.behind = MEDIA_AIR;
     c.light_rays = 0u;
     c.found = NO_DRAWN_LIGHT;
-    if (valid && hit.triangle == NO_TRIANGLE) c.node.radiance = skyAlong(ray, state);
-    if (layered && valid && hit.triangle == NO_TRIANGLE) c.node.radiance *= media_walls[i].passed;
+    if (valid && hit.triangle == NO_TRIANGLE) c.node = missNode(ray.direction, state.medium, params.level, skyAlong(ray, state), layered ? media_walls[i].passed : vec3(1));
     if (valid && hit.triangle != NO_TRIANGLE) {
         c.from = SurfaceId(hit.instance, hit.triangle);
         shadeHit(i, ray, hit, state, c);
@@ -502,7 +513,7 @@ void main() {
     if (lane == 0u) reserve();
     barrier();
     if (valid) {
-        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced)) {
+        if (c.reflection.traced || c.refraction.traced || (indirect && c.diffuse.traced) || (frame[0].backdrop == BACKDROP_NONE && passesUntraced(c.refraction))) {
             c.node.flags |= NODE_BRANCHES;
             if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
             emitBranches(i, c, state);
@@ -510,8 +521,11 @@ void main() {
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
-            emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
-                       c.before, c.behind, c.from, state.seed);
+            if (catching && (c.node.flags & NODE_CATCHER) != 0u)
+                emitCaught(c.node.first_light, c.surface, -ray.direction, c.light_share, c.before, c.from, state.seed);
+            else
+                emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
+                           c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;
     }

@@ -9,6 +9,7 @@ const float PI = 3.14159265358979;
 vec3 srgbToLinear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
 vec3 linearToSrgb(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, vec3(1e-9)), vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308))); }
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
+float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
 /// The angle of the vector (x, y) from the x axis, (-π, π], to 2·10⁻⁷. Vulkan lets atan be 1000 times as far off, and some drivers make use
 /// of that: a tenth of a texel of an environment map, which shows beside the sun.

@@ -79,6 +79,12 @@
 // Of (index - 1) per unit of KHR_materials_dispersion: how far the indices of red and blue are from the middle.
 #define DISPERSION_SPREAD 0.025
 
+// The picture of the environment that the camera sees with --env-visible blurred: its size, and the deviation of the normal
+// distribution that blurs it. Its texels are less than half of that.
+#define BLURRED_WIDTH 128
+#define BLURRED_HEIGHT 64
+#define BLURRED_RADIANS 0.12
+
 // What random numbers are for.
 #define RANDOM_MICROFACET 1
 #define RANDOM_SKY 2

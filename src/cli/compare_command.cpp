@@ -89,6 +89,18 @@ bool is_linear(const fs::path& path) {
     return lower_extension(path) == ".exr" || lower_extension(path) == ".hdr";
 }
 
+/// A transparent picture as it is on black: reports show no alpha, and colours of what is hardly covered say little.
+void put_on_black(Image8& picture) {
+    for (uint32_t& pixel : picture.pixels) {
+        const double alpha = (pixel >> 24) / 255.0;
+        uint32_t out = 0xff000000u;
+        for (int shift = 0; shift < 24; shift += 8)
+            out |= uint32_t(std::lround(255 * linear_to_srgb(alpha * srgb_to_linear((pixel >> shift & 255) / 255.0))))
+                   << shift;
+        pixel = out;
+    }
+}
+
 /// A picture that another program made.
 Entry read_picture(const CompareArguments& a, const fs::path& path) {
     Entry entry{path.filename().string(), std::nullopt, std::nullopt, path,
@@ -102,6 +114,7 @@ Entry read_picture(const CompareArguments& a, const fs::path& path) {
     } else {
         entry.encoded = read_ldr(path);
     }
+    if (a.is_transparent() && !is_linear(path)) put_on_black(entry.encoded);
     const Image8& picture = entry.encoded;
     if (picture.width != a.size.x || picture.height != a.size.y)
         fail("{} has {}x{} pixels, the others {}x{}: pictures must have the same size (--size)", path.string(),
@@ -114,6 +127,7 @@ void render(Entry& entry, Workspace& workspace, RenderSettings settings) {
     settings.tracer = *entry.tracer;
     MadePicture made = render_with_bar(workspace, settings);
     entry.encoded = {made.picture.width, made.picture.height, std::move(made.picture.encoded)};
+    if (made.picture.transparent) put_on_black(entry.encoded);
     entry.radiance = {made.picture.width, made.picture.height, std::move(made.picture.radiance)};
     entry.stats = std::move(made.stats);
 }

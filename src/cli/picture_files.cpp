@@ -131,11 +131,15 @@ void write_heat_map(const Picture& picture, const RayCostField& field, const fs:
 
 }  // namespace
 
-void check_picture_name(const fs::path& path, bool exr_layers) {
+void check_picture_name(const fs::path& path, bool exr_layers, bool transparent) {
     if (format_of(path) != Format::exr && exr_layers)
         fail(
             "--exr-layers puts the auxiliary pictures into the picture itself, and '{}' has no room for them: name it "
             ".exr, or leave --exr-layers out, which writes files beside it",
+            path.string());
+    if (format_of(path) == Format::hdr && transparent)
+        fail(
+            "--background transparent needs an alpha channel, and '{}' has none: name it .png or .exr, or give a colour",
             path.string());
 }
 
@@ -163,7 +167,7 @@ void write_picture(const Picture& picture, const std::vector<Aov>& aovs, bool ex
         planes = {};
     }
     if (format_of(path) == Format::png)
-        write_png(path, Image8{width, height, picture.encoded});
+        write_png(path, Image8{width, height, picture.encoded}, picture.transparent);
     else if (exr_layers)
         write_exr_layers(path, {width, height, picture.radiance}, planes.names, planes.values);
     else

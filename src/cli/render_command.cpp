@@ -65,8 +65,8 @@ void run_render(const RenderArguments& a) {
     check_single(a);
     check_counters(a);
     check_ends(a);
-    check_picture_name(a.output, a.exr_layers);
-    if (!a.preview.empty()) check_picture_name(a.preview, false);
+    check_picture_name(a.output, a.exr_layers, a.is_transparent());
+    if (!a.preview.empty()) check_picture_name(a.preview, false, a.is_transparent());
     if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer reference leave it out");
     const RenderSettings settings = render_settings(a);

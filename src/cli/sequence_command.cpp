@@ -202,7 +202,7 @@ std::vector<uint32_t> choose_frames(const RenderArguments& a, const FramePattern
 
 void render_pictures(const RenderArguments& a, const Sequence& sequence) {
     const FramePattern pattern(a.output);
-    check_picture_name(a.output, a.exr_layers);
+    check_picture_name(a.output, a.exr_layers, a.is_transparent());
     check_files(a, pattern, sequence, {a.scene, a.env});
     Run run(a, sequence);
     check_files(a, pattern, sequence, run.scene().scene().files);
@@ -234,6 +234,10 @@ void check_video(const RenderArguments& a) {
             "the video of them",
             option);
     if (!a.aovs.empty()) fail("--aov writes pictures and a video is none: render pictures (-o NAME_%05d.exr)");
+    if (a.is_transparent())
+        fail(
+            "--background transparent needs an alpha channel and a video has none: render pictures (-o NAME_%05d.png), "
+            "or give a colour");
     if (has_frame_number(a.output))
         fail("'{}' has a place for a frame's number, but a video is one file: leave it out", a.output.string());
     check_video_size(a.size);

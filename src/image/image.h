@@ -35,6 +35,14 @@ struct Image8 {
 /// primaries become those of Rec. 709; `note`, if given: what was not understood.
 Image read_hdr(const std::filesystem::path& path, std::string* note = nullptr);
 
+/// Texels along a side of an environment map at most: more detail than a picture shows, in 0.7 GiB with its levels.
+inline constexpr uint32_t kWidestEnvironment = 8192;
+
+/// Reads an environment map from the same files. Values that are no radiance (negative, infinite, NaN, beyond 1e12)
+/// become 0, alpha 1, and maps with a side above kWidestEnvironment are halved until they are within it; `notes` gets
+/// a line for each. Throws Error as read_hdr() does.
+Image read_environment(const std::filesystem::path& path, std::vector<std::string>& notes);
+
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
 Image8 read_ldr(const std::filesystem::path& path);
 

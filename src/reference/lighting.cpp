@@ -195,6 +195,36 @@ glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3&
     return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
 }
 
+/// Of a surface that is to show nothing but shadows: the share of its light that arrives, of all lamps, also those that
+/// stand for a part of a sampled image, and of the sky. Directions drawn by an environment's brightness would make that
+/// share noisy even where all arrives: one drawn by the cosine tells whether the sky is seen.
+glm::dvec3 Shader::left_by_shadows(const Lit& at) {
+    const Surface& s = at.surface;
+    const PictureSettings& settings = context_.settings;
+    const glm::dvec3 sky = scattered(at).front * context_.surroundings.irradiance(s.normal);
+    glm::dvec3 all = sky, light = sky;
+    if ((settings.ambient || (context_.samples_environment() && settings.shadow)) && largest(sky) > 0) {
+        const glm::dvec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
+        const glm::dvec3 direction = above_surface(sampled, s.geometric);
+        rays_.ambient++;
+        light *= visibility(s.start(s.shadow_start, direction), direction, infinity, at.triangle, at.path.media);
+    }
+    for (uint32_t i = 0; i < context_.all_lights.size(); i++) {
+        const Light& lamp = context_.all_lights[i];
+        const auto [irradiance, direction] = incidence(lamp, i, at);
+        if (irradiance == glm::dvec3(0)) continue;
+        const glm::dvec3 reflected = irradiance * reflectance(s, at.path, at.seen, direction);
+        if (reflected == glm::dvec3(0)) continue;
+        const Start start = start_to(at, direction);
+        all += reflected;
+        light += reflected * arriving(at, start, direction, reach(lamp, start.point, direction));
+    }
+    glm::dvec3 left(1);
+    for (int c = 0; c < 3; c++)
+        if (all[c] > 0) left[c] = light[c] / all[c];
+    return left;
+}
+
 /// What the surface mirrors is not available for diffuse light.
 glm::dvec3 Shader::sky_light(const Lit& at) {
     const Surface& s = at.surface;

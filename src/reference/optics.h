@@ -18,6 +18,9 @@ inline double largest(const glm::dvec3& c) {
 }
 /// Unpolarised reflectance of a dielectric interface; `cosine` ≥ 0 to the normal on the incoming side, `eta`: index
 /// behind it over index before it. 1 at total internal reflection.
+inline double luminance(const glm::dvec3& c) {
+    return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
 double fresnel_dielectric(double cosine, double eta);
 /// From `f0` at normal incidence to `f90` at grazing angles.
 glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine);

@@ -95,6 +95,7 @@ struct Views {
 
 void prepare_aovs(Picture& picture, const PictureSettings& s) {
     const size_t pixels = size_t(s.width) * s.height;
+    picture.transparent = s.backdrop.is_transparent();
     if (!s.aovs) return;
 #define AOV_NOTHING(name, type, channels, nothing) picture.aovs.name.assign(pixels, type(nothing));
     SURFACE_AOVS(AOV_NOTHING)
@@ -224,7 +225,9 @@ void PathTracer::Impl::pixel(const Work& work, const RenderContext& context, con
         const Meeting meeting = shader.hit(path);
         const OracleHit& hit = meeting.hit;
         const glm::dvec3 radiance = shader.radiance(path, meeting);
-        work.sums.add(at, sample, radiance, shader.unlit(), hit.hit());
+        const double alpha =
+            s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit() && !shader.catches();
+        work.sums.add(at, sample, glm::dvec4(radiance, alpha), shader.unlit());
         if (s.aovs && sample == 0 && hit.hit()) {
             const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
             aovs(picture, at, path, first, context.box);
@@ -314,6 +317,7 @@ Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& 
                                 impl_->surroundings,
                                 impl_->lights_for(settings),
                                 impl_->lamps,
+                                impl_->lamps.lights,
                                 impl_->emitters,
                                 impl_->rough_limit_for(settings),
                                 impl_->media,

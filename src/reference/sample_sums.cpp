@@ -14,14 +14,15 @@ SampleSums::SampleSums(const PictureSettings& settings, bool has_unlit)
     if (settings.moments) moments_.resize(sums_.size());
 }
 
-void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec3& radiance, const glm::dvec3& unlit, bool surface) {
+void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec4& covered, const glm::dvec3& unlit) {
+    const glm::dvec3 radiance(covered);
     // One bad number must not poison a pixel.
     bool usable = true;
     for (int i = 0; i < 3; i++) usable &= radiance[i] >= 0 && radiance[i] < 1e30;
     const double largest = std::max({radiance.x, radiance.y, radiance.z});
     const double kept = settings_.clamp && largest > *settings_.clamp ? *settings_.clamp / largest : 1;
     const glm::dvec3 added = usable ? radiance * kept : glm::dvec3(0);
-    sums_[pixel] += glm::dvec4(added, surface ? 1 : 0);
+    sums_[pixel] += glm::dvec4(added, covered.w);
     if (usable && !unlit_.empty()) unlit_[pixel] += unlit * kept;
     if (moments_.empty()) return;
     Moments& moments = moments_[pixel];
@@ -34,6 +35,7 @@ void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec3& radiance, c
 void SampleSums::store(Picture& picture, uint32_t samples) const {
     picture.width = settings_.width;
     picture.height = settings_.height;
+    picture.transparent = settings_.backdrop.is_transparent();
     picture.radiance.resize(sums_.size());
     picture.encoded.resize(sums_.size());
     constexpr size_t kGrain = 1024;  // encoding a pixel takes some 100 ns
@@ -41,7 +43,10 @@ void SampleSums::store(Picture& picture, uint32_t samples) const {
         const glm::dvec4 mean = sums_[i] / double(samples);
         const glm::dvec3 unlit = (unlit_.empty() ? glm::dvec3(0) : unlit_[i]) / double(samples);
         picture.radiance[i] = glm::vec4(mean);
-        picture.encoded[i] = encode(glm::dvec3(mean) - unlit, settings_.exposure, settings_.tonemap, unlit);
+        picture.encoded[i] =
+            settings_.backdrop.is_transparent()
+                ? encode_straight(glm::dvec3(mean) - unlit, mean.w, settings_.exposure, settings_.tonemap, unlit)
+                : encode(glm::dvec3(mean) - unlit, settings_.exposure, settings_.tonemap, unlit);
     });
     if (moments_.empty()) return;
     picture.aovs.variance.clear();

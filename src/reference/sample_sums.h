@@ -14,8 +14,9 @@ class SampleSums {
     SampleSums(const PictureSettings& settings, bool has_unlit);
 
     /// The next sample of a pixel, numbered row by row, which must be the sample `index` of it. What is negative or not
-    /// finite counts as black, and PictureSettings::clamp holds. `unlit`: of `radiance`, what a display shows as it is.
-    void add(size_t pixel, uint32_t index, const glm::dvec3& radiance, const glm::dvec3& unlit, bool surface);
+    /// finite counts as black, and PictureSettings::clamp holds. `radiance`: with alpha; `unlit`: of it, what a display
+    /// shows as it is.
+    void add(size_t pixel, uint32_t index, const glm::dvec4& radiance, const glm::dvec3& unlit);
     /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples.
     void store(Picture& picture, uint32_t samples) const;
     /// With PictureSettings::moments: noise_of() these samples.

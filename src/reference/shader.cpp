@@ -20,10 +20,7 @@ glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
 
 glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     const OracleHit& hit = meeting.hit;
-    if (!hit.hit())
-        return meeting.passed * environment_share(arriving.direction, arriving.density) *
-               context_.surroundings.seen(arriving.direction, environment_blur(arriving.cone, arriving.density),
-                                          arriving.sees_sun, context_.rough_limit);
+    if (!hit.hit()) return meeting.passed * missed(arriving, arriving.weight * meeting.passed);
     const double width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
@@ -33,10 +30,11 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     path.media = meeting.before;
     path.cone.width = width;  // at the hit
     const Scattered scattered = scatter(surface, path, meeting);
+    if (surface.optics.catcher) return kept * caught(surface, path, meeting, scattered.reflection);
     glm::dvec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
-        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on)));
+        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on, path)));
     }
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
@@ -67,8 +65,10 @@ glm::dvec3 Shader::scattered_light(const Surface& s, const Path& path, const Mee
     return direct + follow(diffuse, s, path, at.triangle, 2);
 }
 
-/// A branch that no ray follows sees the environment.
-glm::dvec3 Shader::untraced(const Branch& branch) const {
+/// A branch that no ray follows sees the environment or, straight from the camera, what is to be seen instead.
+glm::dvec3 Shader::untraced(const Branch& branch, const Path& path) const {
+    if (branch.passes && path.is_straight() && context_.settings.backdrop.kind != Backdrop::Kind::environment)
+        return branch.weight * backdrop(branch.direction);
     const double blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
     return branch.weight * environment_share(branch.direction, branch.density) *
            context_.surroundings.radiance(branch.direction, blur);
@@ -79,7 +79,16 @@ glm::dvec3 Shader::untraced(const Branch& branch) const {
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
-    if (!branch.traced) return untraced(branch);
+    if (!branch.traced) {
+        if (branch.passes && path.is_straight()) through_ += luminance(path.weight * branch.weight);
+        return untraced(branch, path);
+    }
+    const Path next = next_path(branch, surface, path, triangle, which);
+    return branch.weight * radiance(next, hit(next));
+}
+
+Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                               uint32_t which) {
     Path next;
     next.origin = surface.start(surface.position, branch.direction);
     next.direction = branch.direction;
@@ -94,7 +103,43 @@ glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Pa
     next.scattered = path.scattered + (which == 2);
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
-    return branch.weight * radiance(next, hit(next));
+    return next;
+}
+
+/// What a surface shows that holds nothing but shadows and mirror images: of what is behind it the share of its light
+/// that arrives, less what mirror images cover, and these.
+glm::dvec3 Shader::caught(const Surface& s, const Path& path, const Meeting& meeting, const Branch& reflection) {
+    if (path.level == 0) catches_ = true;
+    const uint32_t triangle = meeting.hit.triangle;
+    const Seen at_point = this->seen(s, path);
+    glm::dvec3 left = left_by_shadows({s, triangle, path, at_point, path.media}), mirrored(0);
+    rays_.cut_reflection += is_cut(reflection, path);
+    if (reflection.traced) {
+        rays_.reflection++;
+        const Path next = next_path(reflection, s, path, triangle, 0);
+        const Meeting seen = hit(next);
+        if (seen.hit.hit()) {
+            mirrored = reflection.weight * radiance(next, seen);
+            left *= 1.0 - reflection.weight;
+        }
+    }
+    return mirrored + left * missed(path, path.weight * left);
+}
+
+/// What the camera sees where nothing is before it.
+glm::dvec3 Shader::backdrop(const glm::dvec3& direction) const {
+    const Backdrop& seen = context_.settings.backdrop;
+    return seen.kind == Backdrop::Kind::blurred ? context_.surroundings.blurred(direction) : glm::dvec3(seen.color);
+}
+
+/// What a ray that hits nothing sees; `weight`: of the pixel's light.
+glm::dvec3 Shader::missed(const Path& path, const glm::dvec3& weight) {
+    const bool straight = path.is_straight();
+    if (straight) through_ += luminance(weight);
+    if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
+    return environment_share(path.direction, path.density) *
+           context_.surroundings.seen(path.direction, environment_blur(path.cone, path.density), path.sees_sun,
+                                      context_.rough_limit);
 }
 
 /// Has the path come as far as it is followed, but for what `passes` straight through a blended surface? Diffuse

@@ -26,6 +26,7 @@ struct RenderContext {
     const Surroundings& surroundings;
     std::span<const Light> lights;
     const Lamps& lamps;
+    std::span<const Light> all_lights;  ///< with those that stand for a part of an image that is sampled
     const EmitterList& emitters;
     double rough_limit;  ///< radiance that rays after a rough surface see of the environment at most
     const MediaRanks& media;
@@ -74,6 +75,8 @@ class Shader {
         uint32_t scattered = 0;  ///< diffuse bounces so far
         uint32_t passed = 0;     ///< blended surfaces so far: those levels are no bounces
         Channel channel = Channel::all;
+        /// Straight from the camera?
+        bool is_straight() const { return passed == level; }
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
@@ -86,6 +89,10 @@ class Shader {
     const RayCounts& rays() const { return rays_; }
     /// What of the camera ray's light an unlit surface sends.
     const glm::dvec3& unlit() const { return unlit_; }
+    /// Share of the backdrop's light that comes to the camera.
+    double through() const { return through_; }
+    /// Does the camera see a surface that is not to be seen itself?
+    bool catches() const { return catches_; }
 
   private:
     struct Branch {
@@ -165,9 +172,15 @@ class Shader {
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
-    glm::dvec3 untraced(const Branch& branch) const;
     glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                       uint32_t which);
+
+    static Path next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
+                          uint32_t which);
+    glm::dvec3 caught(const Surface& surface, const Path& path, const Meeting& meeting, const Branch& reflection);
+    glm::dvec3 backdrop(const glm::dvec3& direction) const;
+    glm::dvec3 missed(const Path& path, const glm::dvec3& weight);
+    glm::dvec3 untraced(const Branch& branch, const Path& path) const;
 
     bool compensates(const Optics& m) const;
     Parts compensation(const Surface& surface, double n_v) const;
@@ -207,6 +220,7 @@ class Shader {
     };
     static BothSides scattered(const Lit& at);
     glm::dvec3 sky_light(const Lit& at);
+    glm::dvec3 left_by_shadows(const Lit& at);
     double environment_share(const glm::dvec3& direction, double density) const;
     double environment_blur(const Cone& cone, double density) const;
     static glm::dvec3 scattered_from(const Lit& at, const glm::dvec3& direction);
@@ -231,6 +245,8 @@ class Shader {
     PixelSample sample_;
     RayCounts rays_;
     glm::dvec3 unlit_{0};
+    double through_ = 0;
+    bool catches_ = false;
 };
 
 }  // namespace peelray

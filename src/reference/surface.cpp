@@ -28,7 +28,8 @@ Optics::Optics(const Material& m)
       behind(m.diffuse_transmission),
       behind_color(m.diffuse_transmission_color),
       thin(m.thickness <= 0),
-      unlit(m.unlit) {
+      unlit(m.unlit),
+      catcher(m.catcher) {
     // KHR_materials_ior: an index of 0 stands for an infinite one, which reflects all. KHR_materials_specular.
     normal = m.ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2);
     f0 = glm::min(normal * glm::dvec3(m.specular_color), 1.0) * f90;

@@ -36,7 +36,7 @@ struct Optics {
     double spread = 0;                                  ///< of the index: how far red's and blue's are from the middle
     double behind = 0;                                  ///< share of the diffuse light that comes out behind
     glm::dvec3 behind_color{1};
-    bool thin = true, unlit = false;
+    bool thin = true, unlit = false, catcher = false;
 
     Optics() = default;
     explicit Optics(const Material& material);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "path/shading_numbers.h"
 #include "reference/optics.h"
 #include "scene/sampling.h"
 
@@ -33,6 +34,11 @@ glm::dvec3 Surroundings::level(const glm::dvec2& uv, uint32_t level) const {
         width = std::max(width / 2, 1u);
         height = std::max(height / 2, 1u);
     }
+    return picture(uv, offset, width, height);
+}
+
+/// A picture among the texels, between them.
+glm::dvec3 Surroundings::picture(const glm::dvec2& uv, size_t offset, uint32_t width, uint32_t height) const {
     return bilinear(uv * glm::dvec2(width, height), [&](int x, int y) {
         const auto column = size_t((x + int(width)) % int(width)), row = size_t(std::clamp(y, 0, int(height) - 1));
         return glm::dvec3(environment_.texels[offset + row * width + column]);
@@ -44,6 +50,10 @@ glm::dvec3 Surroundings::radiance(const glm::dvec3& d, double blur) const {
     const double exact = blur * (environment_.levels - 1);
     const auto lower = uint32_t(exact), upper = std::min(lower + 1, environment_.levels - 1);
     return exact > lower ? glm::mix(level(uv, lower), level(uv, upper), exact - lower) : level(uv, lower);
+}
+
+glm::dvec3 Surroundings::blurred(const glm::dvec3& d) const {
+    return picture(place(d), environment_.level_texels(), BLURRED_WIDTH, BLURRED_HEIGHT);
 }
 
 double Surroundings::blur_of(double spread) const {

@@ -18,6 +18,8 @@ class Surroundings {
     double blur_of(double spread) const;
     /// What a ray that hits nothing sees; one that does not see the sun sees nothing brighter than `rough_limit`.
     glm::dvec3 seen(const glm::dvec3& direction, double blur, bool sees_sun, double rough_limit) const;
+    /// What the camera sees of it blurred (Environment::has_blurred).
+    glm::dvec3 blurred(const glm::dvec3& direction) const;
     /// Of the environment on a surface with this normal, from nine harmonics.
     glm::dvec3 irradiance(const glm::dvec3& normal) const;
 
@@ -37,6 +39,7 @@ class Surroundings {
         uint32_t column, row;
     };
     glm::dvec3 level(const glm::dvec2& uv, uint32_t level) const;
+    glm::dvec3 picture(const glm::dvec2& uv, size_t offset, uint32_t width, uint32_t height) const;
     double density_in(const Cell& cell, double probability) const;
 
     const Environment& environment_;

@@ -56,6 +56,7 @@ uint32_t material_kinds(const Material& material, const GpuMaterial& m) {
     uint32_t kinds = m.flags & MATERIAL_SCHLICK ? MATERIALS_SPECIFIED : 0;
     if (material.blended) kinds |= MATERIALS_BLENDED;
     if (material.clearcoat > 0) kinds |= MATERIALS_COATED;
+    if (material.catcher) kinds |= MATERIALS_CATCHING;
     if (material.sheen_color != glm::vec3(0)) kinds |= MATERIALS_SHEEN;
     if (material.iridescence > 0) kinds |= MATERIALS_FILMED;
     if (material.anisotropy > 0) kinds |= MATERIALS_STRETCHED;
@@ -81,7 +82,7 @@ GpuMaterial gpu_material(const Material& material, bool colored) {
     set_rare_parts(m, material);
     m.flags = (material.thickness <= 0 ? MATERIAL_THIN : 0u) | (material.unlit ? MATERIAL_UNLIT : 0u) |
               (colored ? MATERIAL_COLORED : 0u) | (material.blended ? MATERIAL_BLENDED : 0u) |
-              (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u);
+              (is_single_sided(material) ? MATERIAL_SINGLE_SIDED : 0u) | (material.catcher ? MATERIAL_CATCHER : 0u);
     set_reflectance(m, material);
     m.thickness = material.thickness;
     m.alpha = material.alpha;

@@ -91,6 +91,7 @@ void CubeMaps::upload_frames(Commands& commands, const Frame& picture) {
     for (const Probe& probe : probes_) {
         const ObjectSummary& object = objects_.objects()[probe.object];
         Frame frame = picture;
+        frame.backdrop = BACKDROP_ENVIRONMENT;  // of cameras alone
         frame.width = frame.height = frame.row_pixels = face_;
         frame.near = 0.005f * glm::length(object.upper - object.lower);
         frame.cone = {0, 2.0f / float(face_)};  // a face sees a right angle

@@ -79,6 +79,19 @@ void check_room(const Device& device, const Scene& scene) {
                      device.room_advice());
 }
 
+EnvironmentLevels levels_on(const Device& device, const Environment& environment) {
+    EnvironmentLevels shown{0, environment.width, environment.height, environment.levels};
+    const size_t all = environment.texels.size() + environment.distribution.quads.size();
+    const auto bytes = [&] { return sizeof kTables + (all - shown.first) * sizeof(glm::vec4); };
+    while (bytes() > device.limits().maxStorageBufferRange && shown.levels > 1) {
+        shown.first += size_t(shown.width) * shown.height;
+        shown.width = std::max(shown.width / 2, 1u);
+        shown.height = std::max(shown.height / 2, 1u);
+        shown.levels--;
+    }
+    return shown;
+}
+
 GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, const Assembly& assembly,
                    const Environment& env)
     : triangles(device, assembly.positions, assembly.triangles),
@@ -113,14 +126,21 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
     }
     environment_lights_ = env.lights;
     upload_media(commands);
+    upload_lookups(commands, env, emitter_table(emitters_of(scene, assembly)));
+    pose(commands, scene, moment);
+}
+
+/// Tables, environment, its distribution and emitters, one behind the other.
+void GpuScene::upload_lookups(Commands& commands, const Environment& env, const std::vector<glm::vec4>& emitters) {
     static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
-    const std::vector<glm::vec4> emitters = emitter_table(emitters_of(scene, assembly));
-    lookups = Buffer(
-        device, "tables and environment map",
-        sizeof kTables + (env.texels.size() + env.distribution.quads.size() + emitters.size()) * sizeof(glm::vec4));
+    const EnvironmentLevels shown = levels_on(device_, env);
+    const std::span<const glm::vec4> texels = std::span(env.texels).subspan(shown.first);
+    lookups =
+        Buffer(device_, "tables and environment map",
+               sizeof kTables + (texels.size() + env.distribution.quads.size() + emitters.size()) * sizeof(glm::vec4));
     commands.upload(lookups, std::span<const float>(kTables[0], sizeof kTables / sizeof(float)));
-    commands.upload(lookups, std::span<const glm::vec4>(env.texels), sizeof kTables);
-    const uint64_t texels_end = sizeof kTables + env.texels.size() * sizeof(glm::vec4);
+    commands.upload(lookups, texels, sizeof kTables);
+    const uint64_t texels_end = sizeof kTables + texels.size() * sizeof(glm::vec4);
     if (!env.distribution.quads.empty())
         commands.upload(lookups, std::span<const glm::vec4>(env.distribution.quads), texels_end);
     env_quads_ = uint32_t(texels_end / sizeof(glm::vec4));
@@ -130,15 +150,15 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
         commands.upload(lookups, std::span<const glm::vec4>(emitters), first_emitter_ * sizeof(glm::vec4));
     env_depth_ = env.distribution.depth;
     env_is_image_ = env.is_image;
-    if (env.is_pyramid) env_texels_ = float(env.height) / kPi;
-    env_size_ = {env.width, env.height};
-    env_levels_ = env.levels;
+    if (env.is_pyramid) env_texels_ = float(shown.height) / kPi;
+    env_size_ = {shown.width, shown.height};
+    env_levels_ = shown.levels;
+    blurred_first_ = uint32_t(env.level_texels() - shown.first);
     sun_cosine_ = env.sun_cosine;
     rough_limit_ = env.rough_limit;
     sun_direction_ = env.sun_direction;
     sun_radiance_ = env.sun_radiance;
     irradiance_ = env.irradiance;
-    pose(commands, scene, moment);
 }
 
 uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& moment) {
@@ -215,6 +235,8 @@ void GpuScene::describe(Frame& frame, bool env_sampled) const {
     frame.lights = lamps(env_sampled);
     frame.env_size = env_size_;
     frame.env_levels = env_levels_;
+    frame.backdrop_first = blurred_first_;
+    frame.all_lights = uint32_t(light_list.size());
     frame.sun_cosine = sun_cosine_;
     frame.rough_limit = env_sampled && env_is_image_ ? std::numeric_limits<float>::max() : rough_limit_;
     frame.env_quads = env_quads_;

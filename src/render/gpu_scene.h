@@ -19,6 +19,13 @@ namespace peelray {
 /// they are assembled, which takes long where they are so many.
 void check_room(const Device& device, const Scene& scene);
 
+/// The levels of an environment that a device binds at once: all, or all from some level on.
+struct EnvironmentLevels {
+    size_t first = 0;  ///< texel
+    uint32_t width = 0, height = 0, levels = 0;
+};
+EnvironmentLevels levels_on(const Device& device, const Environment& environment);
+
 /// Uploaded once per scene and environment; pose() moves it. Throws Error when the device has no room.
 class GpuScene {
   public:
@@ -68,6 +75,7 @@ class GpuScene {
     uint32_t emitters() const { return emitters_; }
 
   private:
+    void upload_lookups(Commands& commands, const Environment& env, const std::vector<glm::vec4>& emitters);
     void upload_media(Commands& commands);
     void upload_lights(Commands& commands, const std::vector<Light>& own);
 
@@ -82,7 +90,7 @@ class GpuScene {
     std::vector<Light> environment_lights_;
     uint32_t first_placed_ = 0, placed_lamps_ = 0;
     glm::uvec2 env_size_{0};
-    uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0;
+    uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0, blurred_first_ = 0;
     bool env_is_image_ = false;
     float env_texels_ = 0;
     float sun_cosine_ = 2, rough_limit_ = 1e30f;

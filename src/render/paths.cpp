@@ -128,6 +128,13 @@ LevelParams level_params(const FrameState& f, uint32_t level, uint32_t sample, u
     return p;
 }
 
+/// Before light is gathered: in transparent pictures nodes then no longer know which shadow rays were theirs.
+static void record_costs(FrameState& f, uint32_t sample, uint32_t first_row) {
+    std::vector<LevelParams> params;
+    for (uint32_t i = 0; i <= f.last_level; i++) params.push_back(level_params(f, i, sample, first_row));
+    f.counter->record_sums(f.commands, f.queues, f.view.target.frame, params);
+}
+
 void record_paths(FrameState& f, uint32_t sample, uint32_t first_row) {
     for (uint32_t level = 0; level <= f.last_level; level++) {
         const LevelParams p = level_params(f, level, sample, first_row);
@@ -138,7 +145,11 @@ void record_paths(FrameState& f, uint32_t sample, uint32_t first_row) {
         record_scatter(f, p);
     }
     if (f.lights_per_hit() > 0) record_shadows(f);
-    for (uint32_t level = f.last_level; level-- > 1;) record_gather(f, level_params(f, level, sample, first_row));
+    if (f.counter) record_costs(f, sample, first_row);
+    // Where nothing is traced from a level there is nothing to gather but, in transparent pictures, what it lets
+    // through.
+    const uint32_t ends = f.last_level + (f.settings.backdrop.is_transparent() ? 1 : 0);
+    for (uint32_t level = ends; level-- > 1;) record_gather(f, level_params(f, level, sample, first_row));
 }
 
 }  // namespace peelray

@@ -45,7 +45,8 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                   Binding::if_used("moments", settings.moments ? &moments_ : nullptr)},
                  AccumulateParams{p.capacity, p.next_capacity, p.light_capacity, p.first_row, p.sample_index, encodes,
                                   scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap),
-                                  settings.clamp.value_or(std::numeric_limits<float>::max())},
+                                  settings.clamp.value_or(std::numeric_limits<float>::max()),
+                                  settings.backdrop.is_transparent()},
                  groups_for(p.capacity, 64));
 }
 
@@ -63,15 +64,17 @@ bool PictureOutput::record_post(Commands& commands, const PictureSettings& setti
 /// `shares`: of unlit colours there are shares of the picture, else sums.
 void PictureOutput::record_encoding(Commands& commands, const PictureSettings& settings, bool shares) const {
     const uint64_t pixels = pixels_of(settings);
-    commands.run(
-        device_.pass("encode", {{"has_unlit", has_unlit_}}), {{"picture", picture_}, {"encoded", encoded_}, unlit()},
-        EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap), shares},
-        groups_for(pixels, 64));
+    commands.run(device_.pass("encode", {{"has_unlit", has_unlit_}}),
+                 {{"picture", picture_}, {"encoded", encoded_}, unlit()},
+                 EncodeParams{uint32_t(pixels), scale_of(settings), 1 / float(settings.spp), uint32_t(settings.tonemap),
+                              shares, settings.backdrop.is_transparent()},
+                 groups_for(pixels, 64));
 }
 
 void PictureOutput::download_picture(Commands& commands, const PictureSettings& settings, Picture& out) const {
     out.width = settings.width;
     out.height = settings.height;
+    out.transparent = settings.backdrop.is_transparent();
     out.radiance = commands.download<glm::vec4>(picture_, pixels_of(settings));
     for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
     out.encoded = commands.download<uint32_t>(encoded_, pixels_of(settings));

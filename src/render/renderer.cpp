@@ -213,6 +213,8 @@ void Renderer::Impl::prepare_view() {
     frame.emitters = f.emitting() ? f.scene.emitters() : 0;
     frame.gi = f.indirect() ? settings.gi : 0;
     frame.last_level = f.last_level;
+    frame.backdrop = uint32_t(settings.backdrop.kind);
+    frame.backdrop_color = settings.backdrop.color;
     f.commands.upload(f.view.target.frame, std::span<const Frame>(&frame, 1));
 }
 
@@ -311,11 +313,6 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     record_shading(sample, first_row);
     const Buffer& frame = f.view.target.frame;
     output.record_accumulation(f.commands, f.queues, frame, level_params(f, 0, sample, first_row), f.settings);
-    if (f.counter) {
-        std::vector<LevelParams> params;
-        for (uint32_t i = 0; i <= f.last_level; i++) params.push_back(level_params(f, i, sample, first_row));
-        f.counter->record_sums(f.commands, f.queues, frame, params);
-    }
     f.commands.copy(f.queues.counters(), f.queues.readback(), QUEUE_COUNTERS * 4);
 }
 

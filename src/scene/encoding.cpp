@@ -46,4 +46,12 @@ uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap, co
     return encoded;
 }
 
+uint32_t encode_straight(const glm::dvec3& radiance, double alpha, double exposure, Tonemap tonemap,
+                         const glm::dvec3& unlit) {
+    alpha = std::clamp(alpha, 0.0, 1.0);
+    if (alpha == 0) return 0;
+    return (encode(radiance / alpha, exposure, tonemap, unlit / alpha) & 0xffffffu) | uint32_t(std::lround(alpha * 255))
+                                                                                          << 24;
+}
+
 }  // namespace peelray

@@ -17,4 +17,9 @@ glm::dvec3 tone_curve(glm::dvec3 color, Tonemap tonemap);
 /// opaque. `unlit`: what is added to it as it is, linear (KHR_materials_unlit).
 uint32_t encode(const glm::dvec3& radiance, double exposure, Tonemap tonemap, const glm::dvec3& unlit = glm::dvec3(0));
 
+/// The same of a pixel of which only a part, `alpha`, is covered, with that alpha and the colour of the part: what is
+/// premultiplied, `radiance` and `unlit`, is divided by it. Nothing covered: 0.
+uint32_t encode_straight(const glm::dvec3& radiance, double alpha, double exposure, Tonemap tonemap,
+                         const glm::dvec3& unlit = glm::dvec3(0));
+
 }  // namespace peelray

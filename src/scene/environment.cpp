@@ -124,11 +124,16 @@ Environment color_environment(const glm::vec3& radiance) {
 }
 
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels) {
+    return image_environment(width, height, std::vector<glm::vec4>(pixels.begin(), pixels.end()));
+}
+
+Environment image_environment(uint32_t width, uint32_t height, std::vector<glm::vec4>&& pixels_given) {
     Environment environment;
     environment.is_image = environment.is_pyramid = true;
     environment.width = width;
     environment.height = height;
-    environment.texels.assign(pixels.begin(), pixels.end());
+    environment.texels = std::move(pixels_given);
+    const std::span<const glm::vec4> pixels = environment.texels;
     const auto brightness = [&](size_t i) {
         return pixels[i].x * 0.2126f + pixels[i].y * 0.7152f + pixels[i].z * 0.0722f;
     };

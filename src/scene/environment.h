@@ -27,6 +27,10 @@ struct Environment {
     bool is_image = false;      ///< of which `lights` stand for a part; else they add to the texels
     bool is_pyramid = false;    ///< its levels are means of the one before: what a wider ray sees
     EnvironmentDistribution distribution;  ///< of the texels; empty unless EnvironmentMode::sampled
+    bool has_blurred = false;  ///< BLURRED_WIDTH·BLURRED_HEIGHT texels more, see add_blurred(), follow the levels
+
+    /// Texels of all levels: where the blurred picture begins, if there is one.
+    size_t level_texels() const;
 };
 
 /// A clear sky over grey ground with the sun at `sun_direction` (unit, to the sun). Made for pleasant pictures, not for
@@ -48,6 +52,20 @@ Environment color_environment(const glm::vec3& radiance);
 /// An equirectangular image (row 0 at the top). If a spot of it outshines everything else (a sun), a directional light
 /// takes its place in the diffuse light, so that it casts shadows; reflections still see the image as it is.
 Environment image_environment(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels);
+/// The same without a copy of the pixels, which large images are spared.
+Environment image_environment(uint32_t width, uint32_t height, std::vector<glm::vec4>&& pixels);
+
+/// Turns all of it around +y, counter-clockwise as seen from above. Turns by whole texels only move them; others
+/// interpolate along the rows. `degrees`: finite.
+void rotate(Environment& environment, double degrees);
+
+/// Makes all of it `factor` times as bright, from 0 up.
+void scale(Environment& environment, float factor);
+
+/// Adds the picture that a camera is to see of it blurred: the mean over BLURRED_RADIANS around each direction
+/// (path/shading_numbers.h), by the density of a normal distribution; the sun's disc, which no texel holds, is left
+/// out. Once, and last: rotate() and scale() do not know of it.
+void add_blurred(Environment& environment);
 
 /// Unit direction of an equirectangular position (u, v in [0, 1]).
 glm::vec3 environment_direction(float u, float v);

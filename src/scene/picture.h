@@ -8,6 +8,7 @@
 
 #include "base/ray_costs.h"
 #include "path/aov_records.h"
+#include "path/backdrop_kinds.h"
 #include "path/shading_numbers.h"
 #include "scene/box.h"
 #include "scene/scene.h"
@@ -16,6 +17,20 @@
 namespace peelray {
 
 struct Moment;
+
+/// What the camera sees where nothing is before it, or nothing but blended surfaces; all other rays see the
+/// environment.
+struct Backdrop {
+    enum class Kind : uint32_t {
+        environment = BACKDROP_ENVIRONMENT,
+        blurred = BACKDROP_BLURRED,  ///< Environment::has_blurred
+        color = BACKDROP_COLOR,
+        transparent = BACKDROP_NONE,  ///< black, and the picture's alpha says where
+    };
+    Kind kind = Kind::environment;
+    glm::vec3 color{0};
+    bool is_transparent() const { return kind == Kind::transparent; }
+};
 
 /// What a picture is to look like, whoever makes it. Defaults are those of the command line.
 struct PictureSettings {
@@ -38,6 +53,7 @@ struct PictureSettings {
     /// first sample was begun, or when it is this noisy (noise_of), both > 0. `noise_target` needs `moments`.
     std::optional<double> time_limit;
     std::optional<float> noise_target;
+    Backdrop backdrop;
     float exposure = 0;  ///< stops; applies to the encoded picture only
     Tonemap tonemap = Tonemap::neutral;
     bool aovs = false;       ///< also the auxiliary pictures
@@ -106,9 +122,13 @@ struct SamplesMade {
 struct Picture {
     uint32_t width = 0, height = 0;
     SamplesMade samples;
-    /// Linear, mean over the samples, before exposure; alpha: share of samples with a surface.
+    /// Linear, mean over the samples, before exposure; alpha: share of samples with a surface. In a transparent picture
+    /// alpha is 1 less the share of the backdrop's light that would come through, and colours are premultiplied by it.
     std::vector<glm::vec4> radiance;
-    std::vector<uint32_t> encoded;  ///< exposed, tone-mapped, 8-bit sRGB, red in the lowest byte
+    /// Exposed, tone-mapped, 8-bit sRGB, red in the lowest byte; opaque, or transparent and of the covered part's
+    /// colour.
+    std::vector<uint32_t> encoded;
+    bool transparent = false;
     Aovs aovs;
     RayCounts rays;
 };

@@ -100,6 +100,7 @@ struct Material {
     glm::vec3 attenuation_color{1};  ///< what white becomes after attenuation_distance inside the volume
     float attenuation_distance = std::numeric_limits<float>::infinity();
     bool unlit = false;        ///< KHR_materials_unlit: base colour as it is
+    bool catcher = false;      ///< nothing is seen of it but shadows and, in front of what is behind it, mirror images
     bool double_sided = true;  ///< both sides are shown, where the file says nothing else; see is_single_sided()
 };
 

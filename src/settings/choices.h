@@ -114,6 +114,13 @@ constexpr auto names_of(EnvironmentMode) {
         {{EnvironmentMode::sampled, "sampled"}, {EnvironmentMode::open, "open"}});
 }
 
+/// What the camera sees of the environment where nothing is before it.
+enum class EnvVisible : uint8_t { yes, no, blurred };
+constexpr auto names_of(EnvVisible) {
+    return std::to_array<Named<EnvVisible>>(
+        {{EnvVisible::yes, "yes"}, {EnvVisible::no, "no"}, {EnvVisible::blurred, "blurred"}});
+}
+
 /// What every surface of a scene can be made of instead.
 enum class MaterialOverride : uint8_t { mirror, glass, clay };
 constexpr auto names_of(MaterialOverride) {

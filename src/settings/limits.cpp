@@ -28,6 +28,10 @@ void check_limits(const Limits& limits, Setting setting, const glm::uvec2& size)
     if (!limits.allow(size.x) || !limits.allow(size.y)) fail_limits(limits, setting, print_text(size));
 }
 
+void check_limits(const Limits& limits, Setting setting, const Background& background) {
+    if (background.color) check_limits(limits, setting, *background.color);
+}
+
 void check_captures(BuilderKind builder, HitTest test) {
     if (builder == BuilderKind::peel && test == HitTest::exact)
         fail(

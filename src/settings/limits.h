@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "settings/choices.h"
+#include "settings/text.h"
 
 namespace peelray {
 
@@ -53,6 +54,8 @@ inline constexpr Limits kNoiseLimits{
 void check_limits(const Limits& limits, Setting setting, const glm::vec3& vector);
 void check_limits(const Limits& limits, Setting setting, const glm::dvec3& vector);
 void check_limits(const Limits& limits, Setting setting, const glm::uvec2& size);
+/// Of its colour.
+void check_limits(const Limits& limits, Setting setting, const Background& background);
 
 template <typename Number>
 requires std::is_arithmetic_v<Number>

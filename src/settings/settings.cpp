@@ -142,6 +142,9 @@ void check(const PictureArguments& arguments) {
     check(arguments.tracing);
     PictureArguments a = arguments;
     check_limits(picture_settings(a));
+    if (a.background && !a.is_lit_by_background() && a.visible() != EnvVisible::no)
+        fail("{} is what is seen instead of the environment, and {} {} shows that: leave one of them out",
+             setting::background, setting::env_visible, name_of(a.visible()));
 }
 
 }  // namespace peelray

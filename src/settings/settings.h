@@ -81,12 +81,64 @@ inline void add_view(SettingList& list, ViewArguments& a) {
 struct LightArguments {
     std::string env;
     bool sky = false;
-    std::optional<glm::vec3> background;
+    double env_rotation = 0;                ///< degrees, counter-clockwise as seen from above
+    float env_intensity = 1;                ///< of all that the environment sends
+    std::optional<EnvVisible> env_visible;  ///< none: as there is a background or not
+    std::optional<Background> background;
     float light_radius = 0;                   ///< world units
     std::optional<EnvironmentMode> env_mode;  ///< none: sampled where it is an image
     float exposure = 0;                       ///< stops
     Tonemap tonemap = Tonemap::neutral;
+
+    /// Is the background's colour the light, too? Beside a chosen environment, or where that is not to be seen, it only
+    /// is what is seen.
+    bool is_lit_by_background() const {
+        return background && background->color && env.empty() && !sky && env_visible != EnvVisible::no;
+    }
+    bool is_transparent() const { return background && background->is_transparent(); }
+    /// What is seen of the environment.
+    EnvVisible visible() const {
+        const bool hides = background && !is_lit_by_background();
+        return env_visible.value_or(hides ? EnvVisible::no : EnvVisible::yes);
+    }
 };
+
+/// The environment, whichever it is, and what is seen of it.
+inline void add_environment(SettingList& list, LightArguments& a, const std::string& group) {
+    add_setting(
+        list, a.background,
+        {.name = "background",
+         .group = group,
+         .help = "one colour from everywhere, linear, from 0 up; with --env, --sky or --env-visible no it "
+                 "lights nothing and is what is seen instead of the environment; transparent: the picture gets "
+                 "an alpha channel, straight in a .png, premultiplied in an .exr",
+         .form = "R,G,B|transparent",
+         .expected = "three numbers R,G,B, or transparent",
+         .limits = {
+             .least = 0, .fault = "a background cannot be darker than black", .choose = "three numbers from 0 up"}});
+    add_setting(list, a.env_rotation,
+                {.name = "env-rotation",
+                 .group = group,
+                 .help = "turn of the environment around the vertical, counter-clockwise as seen from above",
+                 .form = "DEGREES",
+                 .limits = {.open = true,
+                            .fault = "a rotation by {} degrees is impossible",
+                            .choose = "a finite number, such as 90"}});
+    add_setting(
+        list, a.env_intensity,
+        {.name = "env-intensity",
+         .group = group,
+         .help = "how bright the environment is, times what it is by itself; the scene's own lights stay",
+         .limits = {
+             .least = 0, .most = 1e6f, .fault = "an intensity of {} is out of range", .choose = "0 to 1000000"}});
+    add_setting(list, a.env_visible,
+                {.name = "env-visible",
+                 .group = group,
+                 .help = "what the camera sees of the environment where nothing is before it: all, nothing but the "
+                         "--background (black where there is none), or a blurred picture of it; mirrors, glass and "
+                         "rough surfaces see all of it",
+                 .preset = "yes, or no with --background beside --env or --sky"});
+}
 
 inline void add_light(SettingList& list, LightArguments& a) {
     const std::string group = "Light";
@@ -99,16 +151,7 @@ inline void add_light(SettingList& list, LightArguments& a) {
                  .help = "procedural sky with a sun; default: a studio for a file without lights, this sky for a "
                          "built-in scene without, a dim grey for a scene with lights",
                  .excludes = {"env"}});
-    add_setting(list, a.background,
-                {.name = "background",
-                 .group = group,
-                 .help = "one colour from everywhere, linear, from 0 up",
-                 .form = "R,G,B",
-                 .expected = "three numbers R,G,B",
-                 .limits = {.least = 0,
-                            .fault = "a background cannot be darker than black",
-                            .choose = "three numbers from 0 up"},
-                 .excludes = {"env", "sky"}});
+    add_environment(list, a, group);
     add_setting(list, a.env_mode,
                 {.name = "env-mode",
                  .group = group,
@@ -255,6 +298,7 @@ struct EffectArguments {
     std::optional<float> clamp;  ///< radiance; none: samples are as bright as they are
     std::optional<MaterialOverride> material;
     bool floor = false;
+    bool shadow_catcher = false;
     bool no_energy_compensation = false;
 };
 
@@ -301,6 +345,12 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
     add_setting(list, a.material, {.name = "material", .group = group, .help = "make every surface of this material"});
     add_setting(list, a.floor,
                 {.name = "floor", .group = group, .help = "put the scene on a slightly reflective floor"});
+    add_setting(
+        list, a.shadow_catcher,
+        {.name = "shadow-catcher",
+         .group = group,
+         .help = "put the scene on a floor that shows nothing but shadows and mirror images, over the "
+                 "background or, with --background transparent, in the alpha channel; not for --tracer cubemap"});
     add_setting(list, a.no_energy_compensation,
                 {.name = "no-energy-compensation",
                  .group = group,

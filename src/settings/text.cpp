@@ -63,6 +63,12 @@ std::optional<Shard> parse_text(std::string_view text, Shard*) {
     return pair ? std::optional(Shard{pair->first, pair->second}) : std::nullopt;
 }
 
+std::optional<Background> parse_text(std::string_view text, Background*) {
+    if (text == "transparent") return Background{};
+    const std::optional<glm::vec3> color = parse_vector(text);
+    return color ? std::optional(Background(*color)) : std::nullopt;
+}
+
 std::string print_text(const glm::vec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
@@ -81,6 +87,10 @@ std::string print_text(const FrameRange& frames) {
 
 std::string print_text(const Shard& shard) {
     return fmt::format("{}/{}", shard.index, shard.count);
+}
+
+std::string print_text(const Background& background) {
+    return background.color ? print_text(*background.color) : "transparent";
 }
 
 }  // namespace peelray

@@ -50,6 +50,14 @@ struct Shard {
     uint32_t index = 0, count = 1;
 };
 
+/// What is seen where nothing is: a colour, or nothing at all.
+struct Background {
+    std::optional<glm::vec3> color;  ///< linear; none: transparent
+    Background() = default;
+    Background(const glm::vec3& color) : color(color) {}
+    bool is_transparent() const { return !color; }
+};
+
 /// Several values with commas in between, each known to `parse`; `once`: none twice.
 template <typename Value, typename Parse>
 std::optional<std::vector<Value>> parse_list(std::string_view text, Parse&& parse, bool once) {
@@ -68,6 +76,7 @@ std::string print_text(const glm::dvec3& vector);
 std::string print_text(const glm::uvec2& size);
 std::string print_text(const FrameRange& frames);
 std::string print_text(const Shard& shard);
+std::string print_text(const Background& background);
 inline std::string print_text(const std::string& text) {
     return text;
 }
@@ -114,6 +123,8 @@ inline std::optional<glm::dvec3> parse_text(std::string_view text, glm::dvec3*) 
 }
 std::optional<FrameRange> parse_text(std::string_view text, FrameRange*);
 std::optional<Shard> parse_text(std::string_view text, Shard*);
+/// "1,0.5,0" or "transparent".
+std::optional<Background> parse_text(std::string_view text, Background*);
 template <typename Number>
 requires std::is_arithmetic_v<Number> std::optional<Number> parse_text(std::string_view text, Number*) {
     return parse_number<Number>(text);

@@ -5,11 +5,11 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "image/image.h"
 #include "loaders/load.h"
 #include "motion/animation.h"
 #include "motion/bounds.h"
 #include "workspace/camera_choice.h"
+#include "workspace/environment_choice.h"
 #include "workspace/scene_changes.h"
 
 namespace peelray {
@@ -21,19 +21,6 @@ std::string choose_animation(const PictureArguments& a, const Scene& scene, cons
     if (!scene.animations.empty()) return "0";
     note(notes, "the scene has no animation: everything stands at rest");
     return "";
-}
-
-Environment choose_environment(const PictureArguments& a, const Scene& scene, const Notes& notes) {
-    if (!a.env.empty()) {
-        std::string text;
-        const Image image = read_hdr(a.env, &text);
-        if (!text.empty()) note(notes, text);
-        return image_environment(image.width, image.height, image.pixels);
-    }
-    if (a.background) return color_environment(*a.background);
-    // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
-    if (a.sky || (scene.lights.empty() && scene.outdoors)) return sky_environment(default_sun_direction());
-    return scene.lights.empty() ? studio_environment() : color_environment(glm::vec3(0.05f));
 }
 
 /// A framing by what is visible of points that are visited; by all of them where nothing is.
@@ -64,7 +51,8 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
         if (light.kind != Light::Kind::directional) light.radius = settings.light_radius;
     if (settings.material) override_materials(*scene, *settings.material, framed_);
     bounds_ = peelray::bounds(*scene, at_rest(*scene));
-    const Box shown = settings.floor ? add_floor(*scene, framed_) : framed_;
+    const Box shown =
+        settings.floor || settings.shadow_catcher ? add_floor(*scene, framed_, settings.shadow_catcher) : framed_;
     bounds_.add(shown.lower);
     bounds_.add(shown.upper);
     scene_ = std::move(scene);

@@ -19,6 +19,20 @@ void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
     layout.routing = tracing.routing;
 }
 
+static Backdrop backdrop_of(const LightArguments& a) {
+    using Kind = Backdrop::Kind;
+    if (a.is_transparent()) return {Kind::transparent};
+    switch (a.visible()) {
+        case EnvVisible::yes:
+            return {Kind::environment};
+        case EnvVisible::blurred:
+            return {Kind::blurred};
+        case EnvVisible::no:
+            break;
+    }
+    return {Kind::color, a.background ? *a.background->color : glm::vec3(0)};
+}
+
 RenderSettings render_settings(const PictureArguments& a) {
     RenderSettings settings;
     settings.tracer = a.tracing.tracer;
@@ -34,6 +48,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     settings.repeat = a.repeat;
     settings.rebuild = a.rebuild;
     settings.visibility = a.visibility;
+    settings.backdrop = backdrop_of(a);
     settings.exposure = a.exposure;
     settings.tonemap = a.tonemap;
     settings.reflection = a.effects.has(Effect::reflection);

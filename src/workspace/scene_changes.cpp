@@ -32,7 +32,7 @@ void override_materials(Scene& scene, MaterialOverride choice, const Box& box) {
     }
 }
 
-Box add_floor(Scene& scene, const Box& box) {
+Box add_floor(Scene& scene, const Box& box, bool catcher) {
     const glm::vec3 size = box.upper - box.lower, centre = 0.5f * (box.lower + box.upper);
     const float longest = std::max({size.x, size.y, size.z}), half = 1.5f * longest, y = box.lower.y - 1e-4f * longest;
     Material material;
@@ -40,6 +40,8 @@ Box add_floor(Scene& scene, const Box& box) {
     material.base_color = glm::vec3(0.35f, 0.36f, 0.38f);
     material.roughness = 0;
     material.ior = 1.8f;
+    material.catcher = catcher;
+    material.double_sided = !catcher;  // from below nothing is to be hidden
     Primitive primitive;
     Box with_floor = box;
     for (int i = 0; i < 4; i++) {

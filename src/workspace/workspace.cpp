@@ -29,6 +29,9 @@ std::string Workspace::renderer_name(Tracer tracer) {
 }
 
 void Workspace::check(Tracer tracer) {
+    if (tracer == Tracer::cubemap && settings_.shadow_catcher)
+        fail("{} cubemap has no {}: use {} ldc, khr or reference", setting::tracer, setting::shadow_catcher,
+             setting::tracer);
     if (tracer == Tracer::khr) device().check_ray_tracing();
 }
 
@@ -47,6 +50,7 @@ MadePicture Workspace::render(const Shot& shot, const PictureWatch& watch) {
 }
 
 MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const PictureWatch& watch) {
+    check(settings.tracer);
     if (shot.time) scene_.move_to(*shot.time);
     settings.camera = turned(scene_.camera(), shot.turn);
     settings.bounds = scene_.bounds();
@@ -64,6 +68,7 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
     MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, interrupts)
                                                             : render_on_device(settings, interrupts);
+    note_uncaught(settings);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
     const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
@@ -114,6 +119,7 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
         renderer_.reset();
         device().reset_peak();
         check_room(*device_, scene_.scene());
+        note_environment();
         renderer_ = std::make_unique<Renderer>(*device_, scene_.scene(), scene_.moment(), scene_.assembly(),
                                                scene_.environment());
         kind_ = kind;
@@ -122,6 +128,26 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     if (posed_ != scene_.time()) renderer_->pose(scene_.moment());
     posed_ = scene_.time();
     return *renderer_;
+}
+
+/// Says so, once, where a floor that is there for shadows can have none.
+void Workspace::note_uncaught(const PictureSettings& settings) {
+    const bool lamps = !scene_.moment().lights.empty() || !scene_.environment().lights.empty();
+    const bool sky = settings.ambient || (settings.env_mode == EnvironmentMode::sampled && settings.shadow);
+    if (!settings_.shadow_catcher || sky || (lamps && settings.shadow)) return;
+    if (std::exchange(noted_.uncaught, true)) return;
+    note(notes_, fmt::format("nothing that casts shadows lights the floor of {}: {}", setting::shadow_catcher,
+                             "add ambient or shadow to the effects, or choose an environment with a sun"));
+}
+
+/// Says so, once, where the device shows less of the environment map than there is.
+void Workspace::note_environment() {
+    const Environment& environment = scene_.environment();
+    const EnvironmentLevels shown = levels_on(*device_, environment);
+    if (shown.first == 0 || std::exchange(noted_.environment, true)) return;
+    note(notes_, fmt::format("the device '{}' binds {}x{} texels of the environment map at once: those of {}x{} are "
+                             "reduced to them",
+                             device_->info().name, shown.width, shown.height, environment.width, environment.height));
 }
 
 /// Once for all pictures; of too little room once for each hit test that is left.

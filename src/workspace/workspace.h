@@ -67,6 +67,8 @@ class Workspace {
     std::optional<PosedScene::Glimpse> look_back(RenderSettings& settings, const Shot& shot);
     MadePicture in_world(MadePicture made) const;
     void note_cubes(const RenderStats& stats);
+    void note_environment();
+    void note_uncaught(const PictureSettings& settings);
     MadePicture render_on_device(const RenderSettings& settings, const PictureWatch& watch);
     void note_culled(const PictureSettings& settings, const Picture& picture);
 
@@ -85,12 +87,14 @@ class Workspace {
     std::optional<double> posed_;  ///< the moment that the renderer is in
     /// What has been said on this device, and is not said again.
     struct Noted {
-        bool ambient = false;     ///< that a tracer has none
-        bool tolerance = false;   ///< that it is too small
-        bool culled = false;      ///< that the camera is behind single-sided faces
-        bool cut = false;         ///< that rays end too early
-        bool crowded = false;     ///< that rays are in too many media
-        ChoiceSet<HitTest> room;  ///< that these stand for what found no room
+        bool ambient = false;      ///< that a tracer has none
+        bool environment = false;  ///< that it shows less of the map than there is
+        bool uncaught = false;     ///< that no shadows fall on a floor that is there for them
+        bool tolerance = false;    ///< that it is too small
+        bool culled = false;       ///< that the camera is behind single-sided faces
+        bool cut = false;          ///< that rays end too early
+        bool crowded = false;      ///< that rays are in too many media
+        ChoiceSet<HitTest> room;   ///< that these stand for what found no room
     } noted_;
 };
 

@@ -71,11 +71,13 @@ TEST_F(Outputs, FoldersAreMadeWhenAFileIsWritten) {
 
 TEST(PictureFiles, FormatsFollowFromTheName) {
     for (const char* name : {"a.png", "a.exr", "a.hdr", "a.PNG", "b.tiff.Exr"})
-        EXPECT_NO_THROW(check_picture_name(name, false)) << name;
+        EXPECT_NO_THROW(check_picture_name(name, false, false)) << name;
     for (const char* name : {"a", "a.jpg", "png", ".png", "a.png.", "a.png/b"})
-        expect_error([&] { check_picture_name(name, false); }, "name it .png, .exr or .hdr");
-    EXPECT_NO_THROW(check_picture_name("a.exr", true));
-    EXPECT_THROW(check_picture_name("a.png", true), Error) << "only an EXR has layers";
+        expect_error([&] { check_picture_name(name, false, false); }, "name it .png, .exr or .hdr");
+    EXPECT_NO_THROW(check_picture_name("a.exr", true, true));
+    EXPECT_THROW(check_picture_name("a.png", true, false), Error) << "only an EXR has layers";
+    EXPECT_NO_THROW(check_picture_name("a.png", false, true));
+    expect_error([&] { check_picture_name("a.hdr", false, true); }, "--background transparent needs an alpha channel");
 }
 
 TEST(PictureFiles, AuxiliaryPicturesStandBesideThePicture) {
