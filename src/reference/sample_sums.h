@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "denoise/denoise_params.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -16,8 +17,11 @@ class SampleSums {
     /// The next sample of a pixel, numbered row by row, which must be the sample `index` of it. What is negative or not
     /// finite counts as black, and PictureSettings::clamp holds. `unlit`: of `radiance`, what a display shows as it is.
     void add(size_t pixel, uint32_t index, const glm::dvec3& radiance, const glm::dvec3& unlit, bool surface);
-    /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples.
-    void store(Picture& picture, uint32_t samples) const;
+    /// What guides the denoiser in a sample (Shader::guide).
+    void add_guide(size_t pixel, DenoiseGuide guide);
+    /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples;
+    /// of a `finished` one after denoising it, if the settings say so.
+    void store(Picture& picture, uint32_t samples, bool finished) const;
     /// With PictureSettings::moments: noise_of() these samples.
     float noise(uint32_t samples) const;
 
@@ -27,8 +31,9 @@ class SampleSums {
     };
     const PictureSettings& settings_;
     std::vector<glm::dvec4> sums_;
-    std::vector<glm::dvec3> unlit_;  ///< empty: no unlit material
-    std::vector<Moments> moments_;   ///< empty: not asked for
+    std::vector<glm::dvec3> unlit_;     ///< empty: no unlit material
+    std::vector<DenoiseGuide> guides_;  ///< empty: nothing is denoised
+    std::vector<Moments> moments_;      ///< empty: not asked for
 };
 
 }  // namespace peelray

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "denoise/denoise_params.h"
 #include "reference/albedos.h"
 #include "reference/bvh.h"
 #include "reference/emitter_list.h"
@@ -74,6 +75,8 @@ class Shader {
         uint32_t scattered = 0;  ///< diffuse bounces so far
         uint32_t passed = 0;     ///< blended surfaces so far: those levels are no bounces
         Channel channel = Channel::all;
+        bool guided = false;  ///< the denoiser's guides are looked for along it
+        double length = 0;    ///< of the path so far
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
@@ -86,6 +89,8 @@ class Shader {
     const RayCounts& rays() const { return rays_; }
     /// What of the camera ray's light an unlit surface sends.
     const glm::dvec3& unlit() const { return unlit_; }
+    /// Of a guided camera ray; `surfaces` is 0 where there are none.
+    const DenoiseGuide& guide() const { return guide_; }
 
   private:
     struct Branch {
@@ -166,8 +171,11 @@ class Shader {
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
     glm::dvec3 untraced(const Branch& branch) const;
-    glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
-                      uint32_t which);
+    glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle, uint32_t which,
+                      bool guided = false);
+    std::optional<uint32_t> guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const;
+    void guide(const Surface& surface, const Path& path, const glm::dvec3& all, const glm::dvec3& second,
+               const glm::dvec3& lit);
 
     bool compensates(const Optics& m) const;
     Parts compensation(const Surface& surface, double n_v) const;
@@ -231,6 +239,7 @@ class Shader {
     PixelSample sample_;
     RayCounts rays_;
     glm::dvec3 unlit_{0};
+    DenoiseGuide guide_{};
 };
 
 }  // namespace peelray

@@ -86,6 +86,7 @@ class Workspace {
     /// What has been said on this device, and is not said again.
     struct Noted {
         bool ambient = false;     ///< that a tracer has none
+        bool denoise = false;     ///< that there is nothing to denoise
         bool tolerance = false;   ///< that it is too small
         bool culled = false;      ///< that the camera is behind single-sided faces
         bool cut = false;         ///< that rays end too early
