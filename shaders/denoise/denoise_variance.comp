@@ -1,5 +1,5 @@
-// The variance of the light by what is around: the samples' own, smoothed; with one sample the differences of neighbours, which edges and
-// slopes of the light make larger in few places only.
+// The variance of the light by what is around: the samples' own, smoothed; with one sample half of the squared differences of neighbours,
+// which edges and slopes of the light make larger in few places only.
 #version 460
 #include "common/common.glsl"
 #include "denoise/denoise_params.h"
@@ -35,7 +35,8 @@ float varianceAt(ivec2 p) {
             if (one_sample) {
                 const float beside = before.x * tap.x, below = y > -reach ? above[x + reach].x * tap.x : 0.0;
                 weights += beside + below;
-                sum += beside * abs(tap.y - before.y) + below * abs(tap.y - above[x + reach].y);
+                const vec2 distances = tap.y - vec2(before.y, above[x + reach].y);
+                sum += beside * distances.x * distances.x + below * distances.y * distances.y;
                 before = above[x + reach] = tap;
             } else {
                 weights += tap.x;
@@ -44,9 +45,7 @@ float varianceAt(ivec2 p) {
         }
     }
     if (weights <= 0.0) return 0.0;
-    const float mean = sum / weights;
-    // Of two values of a normal distribution the mean distance is 2 / sqrt(pi) standard deviations.
-    return one_sample ? 0.25 * 3.14159265 * mean * mean : mean;
+    return one_sample ? 0.5 * sum / weights : sum / weights;
 }
 
 void main() {

@@ -181,7 +181,7 @@ double Filter::variance_of_samples(int x, int y) const {
     return weights > 0 ? sum / weights : 0;
 }
 
-/// By the mean distance of neighbours: of two values of a normal distribution it is 2 / √π standard deviations.
+/// By the differences of neighbours, which have twice the variance.
 double Filter::variance_of_neighbours(int x, int y) const {
     constexpr int reach = DENOISE_VARIANCE_REACH;
     const Features& pixel = features(x, y);
@@ -189,17 +189,16 @@ double Filter::variance_of_neighbours(int x, int y) const {
     const auto pair = [&](int dx, int dy, int ex, int ey) {
         const double weight = likeness(pixel, x, y, dx, dy) * likeness(pixel, x, y, ex, ey);
         if (weight == 0) return;
+        const double difference = luminance(signal(x + dx, y + dy).light) - luminance(signal(x + ex, y + ey).light);
         weights += weight;
-        sum += weight * std::abs(luminance(signal(x + dx, y + dy).light) - luminance(signal(x + ex, y + ey).light));
+        sum += weight * difference * difference;
     };
     for (int dy = -reach; dy <= reach; dy++)
         for (int dx = -reach; dx <= reach; dx++) {
             if (dx < reach) pair(dx, dy, dx + 1, dy);
             if (dy < reach) pair(dx, dy, dx, dy + 1);
         }
-    if (weights == 0) return 0;
-    const double deviation = sum / weights * std::sqrt(optics::pi) / 2;
-    return deviation * deviation;
+    return weights > 0 ? sum / weights / 2 : 0;
 }
 
 double Filter::smooth_variance(int x, int y) const {
