@@ -60,9 +60,9 @@ SHARED_SIZE(DenoiseParams, 12);
 #define DENOISE_LEAST_ALBEDO 0.02
 // How much a tap's weight falls (exponents of e): per 1 - cosine between the normals, per difference of gloss, of the
 // luminance of the albedo;
-#define DENOISE_NORMAL_FALL 128.0
+#define DENOISE_NORMAL_FALL 256.0
 #define DENOISE_GLOSS_FALL 8.0
-#define DENOISE_ALBEDO_FALL 1.0
+#define DENOISE_ALBEDO_FALL 2.0
 // by the difference to the depth of the plane through the pixel, over these shares of that plane's rise and of the depth;
 #define DENOISE_SLOPE_TOLERANCE 0.3
 #define DENOISE_DEPTH_TOLERANCE 0.002
