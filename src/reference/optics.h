@@ -16,11 +16,11 @@ inline constexpr double pi = 3.14159265358979323846;
 inline double largest(const glm::dvec3& c) {
     return std::max(c.x, std::max(c.y, c.z));
 }
+inline double luminance(const glm::dvec3& c) {
+    return LUMINANCE_RED * c.x + LUMINANCE_GREEN * c.y + LUMINANCE_BLUE * c.z;
+}
 /// Unpolarised reflectance of a dielectric interface; `cosine` ≥ 0 to the normal on the incoming side, `eta`: index
 /// behind it over index before it. 1 at total internal reflection.
-inline double luminance(const glm::dvec3& c) {
-    return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722));
-}
 double fresnel_dielectric(double cosine, double eta);
 /// From `f0` at normal incidence to `f90` at grazing angles.
 glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine);

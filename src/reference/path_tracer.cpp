@@ -221,6 +221,7 @@ void PathTracer::Impl::pixel(const Work& work, const RenderContext& context, con
     for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
         Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
+        path.guided = s.denoise;
         Shader shader(context, {sample, sample_bits, s.seed});
         const Meeting meeting = shader.hit(path);
         const OracleHit& hit = meeting.hit;
@@ -228,6 +229,7 @@ void PathTracer::Impl::pixel(const Work& work, const RenderContext& context, con
         const double alpha =
             s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit() && !shader.catches();
         work.sums.add(at, sample, glm::dvec4(radiance, alpha), shader.unlit());
+        if (s.denoise) work.sums.add_guide(at, shader.guide());
         if (s.aovs && sample == 0 && hit.hit()) {
             const OracleHit first = bvh.nearest({path.origin, 0, path.direction, infinity}, Shader::none).hit;
             aovs(picture, at, path, first, context.box);
@@ -333,14 +335,14 @@ Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& 
     if (watch.progress) progress = [&](double of_pass) { watch.progress(passes.share(of_pass)); };
     const auto look = [&] {
         Picture so_far;
-        sums.store(so_far, passes.done());
+        sums.store(so_far, passes.done(), false);
         return so_far;
     };
     while (passes.next() > 0) {
         impl_->pass({picture, sums, passes.done(), passes.end_of_pass()}, context, views, progress, threads);
         passes.finish([&] { return sums.noise(passes.done()); }, look);
     }
-    sums.store(picture, passes.done());
+    sums.store(picture, passes.done(), true);
     picture.samples = passes.made();
     picture.rays.primary = uint64_t(settings.width) * settings.height * picture.samples.count;
     return picture;

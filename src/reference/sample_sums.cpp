@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "reference/denoiser.h"
 #include "scene/encoding.h"
 #include "scene/passes.h"
 
@@ -12,6 +13,7 @@ SampleSums::SampleSums(const PictureSettings& settings, bool has_unlit)
     : settings_(settings), sums_(size_t(settings.width) * settings.height, glm::dvec4(0)) {
     if (has_unlit) unlit_.assign(sums_.size(), glm::dvec3(0));
     if (settings.moments) moments_.resize(sums_.size());
+    if (settings.denoise && draws_at_random(settings)) guides_.resize(sums_.size());
 }
 
 void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec4& covered, const glm::dvec3& unlit) {
@@ -32,15 +34,36 @@ void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec4& covered, co
     moments.deviations += before * (luminance - moments.mean);
 }
 
-void SampleSums::store(Picture& picture, uint32_t samples) const {
+void SampleSums::add_guide(size_t pixel, DenoiseGuide guide) {
+    if (guides_.empty() || guide.surfaces == 0) return;
+    const float largest = std::max({guide.light.x, guide.light.y, guide.light.z});
+    if (settings_.clamp && largest > *settings_.clamp) {
+        guide.light *= *settings_.clamp / largest;
+        guide.mean *= *settings_.clamp / largest;
+    }
+    DenoiseGuide& sums = guides_[pixel];
+    sums.light += guide.light;
+    sums.albedo += guide.albedo;
+    sums.normal += guide.normal;
+    sums.depth += guide.depth;
+    sums.gloss += guide.gloss;
+    sums.surfaces += 1;
+    const float before = guide.mean - sums.mean;
+    sums.mean += before / sums.surfaces;
+    sums.deviations += before * (guide.mean - sums.mean);
+}
+
+void SampleSums::store(Picture& picture, uint32_t samples, bool finished) const {
     picture.width = settings_.width;
     picture.height = settings_.height;
     picture.transparent = settings_.backdrop.is_transparent();
     picture.radiance.resize(sums_.size());
     picture.encoded.resize(sums_.size());
+    std::vector<glm::dvec4> pixels = sums_;
+    if (finished && !guides_.empty()) denoise(settings_.width, settings_.height, samples == 1, guides_, pixels);
     constexpr size_t kGrain = 1024;  // encoding a pixel takes some 100 ns
-    parallel_for(sums_.size(), kGrain, [&](size_t i) {
-        const glm::dvec4 mean = sums_[i] / double(samples);
+    parallel_for(pixels.size(), kGrain, [&](size_t i) {
+        const glm::dvec4 mean = pixels[i] / double(samples);
         const glm::dvec3 unlit = (unlit_.empty() ? glm::dvec3(0) : unlit_[i]) / double(samples);
         picture.radiance[i] = glm::vec4(mean);
         picture.encoded[i] =

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "denoise/denoise_params.h"
 #include "scene/picture.h"
 
 namespace peelray {
@@ -17,8 +18,11 @@ class SampleSums {
     /// finite counts as black, and PictureSettings::clamp holds. `radiance`: with alpha; `unlit`: of it, what a display
     /// shows as it is.
     void add(size_t pixel, uint32_t index, const glm::dvec4& radiance, const glm::dvec3& unlit);
-    /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples.
-    void store(Picture& picture, uint32_t samples) const;
+    /// What guides the denoiser in a sample (Shader::guide).
+    void add_guide(size_t pixel, DenoiseGuide guide);
+    /// Sets size, radiance, encoded picture and Aovs of SAMPLE_AOVS of a picture whose pixels have `samples` samples;
+    /// of a `finished` one after denoising it, if the settings say so.
+    void store(Picture& picture, uint32_t samples, bool finished) const;
     /// With PictureSettings::moments: noise_of() these samples.
     float noise(uint32_t samples) const;
 
@@ -28,8 +32,9 @@ class SampleSums {
     };
     const PictureSettings& settings_;
     std::vector<glm::dvec4> sums_;
-    std::vector<glm::dvec3> unlit_;  ///< empty: no unlit material
-    std::vector<Moments> moments_;   ///< empty: not asked for
+    std::vector<glm::dvec3> unlit_;     ///< empty: no unlit material
+    std::vector<DenoiseGuide> guides_;  ///< empty: nothing is denoised
+    std::vector<Moments> moments_;      ///< empty: not asked for
 };
 
 }  // namespace peelray

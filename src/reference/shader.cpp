@@ -29,6 +29,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     path.weight *= kept;
     path.media = meeting.before;
     path.cone.width = width;  // at the hit
+    path.length += hit.t;
     const Scattered scattered = scatter(surface, path, meeting);
     if (surface.optics.catcher) return kept * caught(surface, path, meeting, scattered.reflection);
     glm::dvec3 sum = scattered.radiance;
@@ -36,20 +37,25 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
         const Branch& on = scattered.refraction;
         unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on, path)));
     }
+    const std::optional<uint32_t> guiding = guiding_branch(surface, path, scattered);
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
     if (scattered.reflection.traced) rays_.reflection++;
     rays_.cut_reflection += is_cut(scattered.reflection, path);
-    sum += follow(scattered.reflection, surface, path, hit.triangle, 0);
+    sum += follow(scattered.reflection, surface, path, hit.triangle, 0, guiding == 0u);
     const Branch& whole = scattered.refraction;
     (whole.mirrors ? rays_.cut_reflection : rays_.cut_refraction) += is_cut(whole, path);
+    glm::dvec3 beside(0);
     const auto second = [&](const Branch& branch) {
         if (branch.traced) (branch.mirrors ? rays_.reflection : rays_.refraction)++;
-        sum += follow(branch, surface, path, hit.triangle, 1);
+        beside += follow(branch, surface, path, hit.triangle, 1, guiding == 1u);
     };
     if (scattered.split.empty()) second(whole);
     for (const Branch& channel : scattered.split) second(channel);
-    if (!surface.optics.unlit) sum += scattered_light(surface, path, meeting);
+    sum += beside;
+    const glm::dvec3 lit = surface.optics.unlit ? glm::dvec3(0) : scattered_light(surface, path, meeting);
+    sum += lit;
+    if (path.guided && !guiding) guide(surface, path, sum, beside, lit);
     return kept * sum;
 }
 
@@ -77,13 +83,14 @@ glm::dvec3 Shader::untraced(const Branch& branch, const Path& path) const {
 /// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
 /// part of, 2 the diffuse one.
 glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
-                          uint32_t which) {
+                          uint32_t which, bool guided) {
     if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
     if (!branch.traced) {
         if (branch.passes && path.is_straight()) through_ += luminance(path.weight * branch.weight);
         return untraced(branch, path);
     }
-    const Path next = next_path(branch, surface, path, triangle, which);
+    Path next = next_path(branch, surface, path, triangle, which);
+    next.guided = guided;
     return branch.weight * radiance(next, hit(next));
 }
 
@@ -103,6 +110,7 @@ Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, con
     next.scattered = path.scattered + (which == 2);
     next.passed = path.passed + branch.passes;
     next.channel = branch.channel == Channel::all ? path.channel : branch.channel;
+    next.length = path.length;
     return next;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "denoise/denoise_params.h"
 #include "reference/albedos.h"
 #include "reference/bvh.h"
 #include "reference/emitter_list.h"
@@ -77,6 +78,8 @@ class Shader {
         Channel channel = Channel::all;
         /// Straight from the camera?
         bool is_straight() const { return passed == level; }
+        bool guided = false;  ///< the denoiser's guides are looked for along it
+        double length = 0;    ///< of the path so far
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
@@ -93,6 +96,8 @@ class Shader {
     double through() const { return through_; }
     /// Does the camera see a surface that is not to be seen itself?
     bool catches() const { return catches_; }
+    /// Of a guided camera ray; `surfaces` is 0 where there are none.
+    const DenoiseGuide& guide() const { return guide_; }
 
   private:
     struct Branch {
@@ -172,8 +177,11 @@ class Shader {
     bool is_wanted(const Branch& branch, const Path& path) const;
     bool is_traced(const Branch& branch, const Path& path) const;
     bool is_cut(const Branch& branch, const Path& path) const;
-    glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
-                      uint32_t which);
+    glm::dvec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle, uint32_t which,
+                      bool guided = false);
+    std::optional<uint32_t> guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const;
+    void guide(const Surface& surface, const Path& path, const glm::dvec3& all, const glm::dvec3& second,
+               const glm::dvec3& lit);
 
     static Path next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which);
@@ -247,6 +255,7 @@ class Shader {
     glm::dvec3 unlit_{0};
     double through_ = 0;
     bool catches_ = false;
+    DenoiseGuide guide_{};
 };
 
 }  // namespace peelray

@@ -8,10 +8,6 @@
 namespace peelray {
 namespace {
 
-uint64_t pixels_of(const PictureSettings& settings) {
-    return uint64_t(settings.width) * settings.height;
-}
-
 /// Of a sum over the samples.
 float scale_of(const PictureSettings& settings) {
     return std::exp2(settings.exposure) / float(settings.spp);
@@ -19,7 +15,7 @@ float scale_of(const PictureSettings& settings) {
 
 }  // namespace
 
-void PictureOutput::prepare(const PictureSettings& settings, bool unlit, bool open) {
+void PictureOutput::prepare(const PictureSettings& settings, bool unlit, bool open, bool denoises) {
     const MemoryPart part(device_, "images");
     ensure_size(device_, picture_, "picture", pixels_of(settings) * 16);
     ensure_size(device_, encoded_, "encoded picture", pixels_of(settings) * 4);
@@ -27,11 +23,14 @@ void PictureOutput::prepare(const PictureSettings& settings, bool unlit, bool op
     open_ = open;
     if (unlit) ensure_size(device_, unlit_, "unlit colours", pixels_of(settings) * sizeof(glm::vec3));
     if (settings.moments) ensure_size(device_, moments_, "moments", pixels_of(settings) * sizeof(glm::vec2));
+    if (!denoises) denoiser_.reset();
+    if (denoises && !denoiser_) denoiser_ = std::make_unique<Denoiser>(device_);
+    if (denoiser_) denoiser_->prepare(settings);
 }
 
 void PictureOutput::record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame,
                                         const LevelParams& p, const PictureSettings& settings) {
-    const bool encodes = !open_ && post_passes_.empty() && p.sample_index + 1 == settings.spp;
+    const bool encodes = !open_ && !denoiser_ && post_passes_.empty() && p.sample_index + 1 == settings.spp;
     commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}, {"has_moments", settings.moments}}),
                  {{"frame", frame},
                   {"nodes", queues.level(0).nodes},
@@ -52,7 +51,8 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
 
 bool PictureOutput::record_post(Commands& commands, const PictureSettings& settings) {
     const bool posts = !post_passes_.empty();
-    if (!posts && !open_) return false;
+    if (!posts && !open_ && !denoiser_) return false;
+    if (denoiser_) denoiser_->record_filter(commands, picture_, settings);
     if (posts && has_unlit_)
         commands.run(device_.pass("unlit_share"), {{"picture", picture_}, {"unlit", unlit_}},
                      uint32_t(pixels_of(settings)), groups_for(pixels_of(settings), 64));

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "gpu/commands.h"
+#include "render/denoiser.h"
 #include "render/path_queues.h"
 #include "scene/picture.h"
 
@@ -21,14 +23,18 @@ class PictureOutput {
 
     void add(PostPass pass) { post_passes_.push_back(std::move(pass)); }
 
-    /// Makes room; `unlit`: some surfaces are to be shown as they are; `open`: nobody knows which sample is the last.
-    void prepare(const PictureSettings& settings, bool unlit, bool open);
+    /// Makes room; `unlit`: some surfaces are to be shown as they are; `open`: nobody knows which sample is the last;
+    /// `denoises`: what is drawn at random is smoothed in the end.
+    void prepare(const PictureSettings& settings, bool unlit, bool open, bool denoises);
+    /// Which wants guides from the frame; null: nothing is denoised.
+    Denoiser* denoiser() { return denoiser_.get(); }
     /// Records that a band of the camera's level is added to the picture; `frame`: the view's constants. What no post
     /// pass waits for is encoded along with the last sample, where that is known.
     void record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame, const LevelParams& p,
                              const PictureSettings& settings);
-    /// Once all bands have been submitted: records the post passes, if there are any, and the encoding. False: nothing
-    /// was left to do. From here on the `spp` of settings is the number of samples that the picture has.
+    /// Once all bands have been submitted: records the denoiser and the post passes, if there are any, and the
+    /// encoding. False: nothing was left to do. From here on the `spp` of settings is the number of samples that the
+    /// picture has.
     bool record_post(Commands& commands, const PictureSettings& settings);
     void download(Commands& commands, const PictureSettings& settings, Picture& out) const;
     /// Between two samples: the picture so far, before post passes. Submits.
@@ -41,7 +47,10 @@ class PictureOutput {
     /// of the mean of n samples.
     const Buffer& moments() const { return moments_; }
 
-    uint64_t bytes() const { return picture_.bytes() + encoded_.bytes() + unlit_.bytes() + moments_.bytes(); }
+    uint64_t bytes() const {
+        return picture_.bytes() + encoded_.bytes() + unlit_.bytes() + moments_.bytes() +
+               (denoiser_ ? denoiser_->bytes() : 0);
+    }
 
   private:
     void record_encoding(Commands& commands, const PictureSettings& settings, bool shares) const;
@@ -49,6 +58,7 @@ class PictureOutput {
 
     Device& device_;
     std::vector<PostPass> post_passes_;
+    std::unique_ptr<Denoiser> denoiser_;
     /// Gives the picture's values to the parts of a display: without what is unlit, nothing of `unlit_` is read.
     Binding unlit() const { return Binding::if_used("unlit", has_unlit_ ? &unlit_ : nullptr); }
 

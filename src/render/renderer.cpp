@@ -132,7 +132,8 @@ void Renderer::Impl::prepare(const RenderSettings& settings, bool open) {
     check_settings(f.device, f.scene, settings);
     f.commands.time_passes(settings.time_passes);
     f.view.prepare(f.scene, settings);
-    output.prepare(settings, f.scene.has_unlit, open);
+    output.prepare(settings, f.scene.has_unlit, open,
+                   settings.denoise && draws_at_random(settings) && !shades_by_maps(settings));
     prepare_tracer();
     prepare_view();
     if (f.maps) prepare_maps();
@@ -313,6 +314,7 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     record_shading(sample, first_row);
     const Buffer& frame = f.view.target.frame;
     output.record_accumulation(f.commands, f.queues, frame, level_params(f, 0, sample, first_row), f.settings);
+    if (Denoiser* denoiser = output.denoiser()) denoiser->record_guides(f, sample, first_row);
     f.commands.copy(f.queues.counters(), f.queues.readback(), QUEUE_COUNTERS * 4);
 }
 

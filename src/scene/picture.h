@@ -60,6 +60,7 @@ struct PictureSettings {
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
     bool motion = false;     ///< and Aovs::motion, which else is 0
     bool moments = false;    ///< also those of SAMPLE_AOVS, whether there are others or not
+    bool denoise = false;    ///< what is drawn at random is smoothed where the picture shows the same
     Camera camera_before;    ///< for `motion`: where the camera was at the moment before
     /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
     /// reference needs what is generated placed in it (Simulation).
@@ -147,6 +148,11 @@ inline bool is_sampled(const PictureSettings& settings) {
 /// Do emissive triangles light the scene? Without samples their light would be noise.
 inline bool samples_emitters(const PictureSettings& settings) {
     return is_sampled(settings) || settings.gi > 0;
+}
+
+/// Is any light drawn at random, so that a picture of few samples is noisy?
+inline bool draws_at_random(const PictureSettings& settings) {
+    return is_sampled(settings) || settings.gi > 0 || settings.ambient;
 }
 
 /// Levels of the tree of rays that reflections and refractions take: bounces, and the blended surfaces that a path goes

@@ -300,6 +300,7 @@ struct EffectArguments {
     bool floor = false;
     bool shadow_catcher = false;
     bool no_energy_compensation = false;
+    bool denoise = false;
 };
 
 /// A list out of the effects, or "none".
@@ -355,6 +356,11 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                 {.name = "no-energy-compensation",
                  .group = group,
                  .help = "rough surfaces lose the light that they scatter more than once, as in many renderers"});
+    add_setting(list, a.denoise,
+                {.name = "denoise",
+                 .group = group,
+                 .help = "smooth the noise of light that is drawn at random, guided by the surfaces seen; textures, "
+                         "edges and clear mirror images stay sharp"});
 }
 
 /// Which device works.

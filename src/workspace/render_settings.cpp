@@ -55,6 +55,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     settings.refraction = a.effects.has(Effect::refraction);
     settings.shadow = a.effects.has(Effect::shadow);
     settings.ambient = a.effects.has(Effect::ambient);
+    settings.denoise = a.denoise;
     settings.energy_compensation = !a.no_energy_compensation;
     return settings;
 }

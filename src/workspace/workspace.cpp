@@ -12,6 +12,20 @@
 #include "workspace/render_settings.h"
 
 namespace peelray {
+namespace {
+
+/// What to say of a picture that is to be denoised and has no noise; else "".
+std::string clean_note(const RenderSettings& settings) {
+    if (!settings.denoise) return "";
+    if (settings.tracer == Tracer::cubemap)
+        return fmt::format("{} changes nothing: with {} cubemap no light is drawn at random", Setting{"denoise"},
+                           setting::tracer);
+    if (draws_at_random(settings)) return "";
+    return fmt::format("{} changes nothing: with {} 1 no light is drawn at random but that of {} ambient",
+                       Setting{"denoise"}, setting::spp, setting::effects);
+}
+
+}  // namespace
 
 Workspace::Workspace(const PictureArguments& settings, Notes notes)
     : settings_(settings), notes_(std::move(notes)), scene_(settings_, notes_) {}
@@ -66,6 +80,8 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
     if (watch.stop) interrupts.stop = [&] { return whole = true, watch.stop(); };
     if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
+    const std::string clean = clean_note(settings);
+    if (!clean.empty() && !std::exchange(noted_.denoise, true)) note(notes_, clean);
     MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, interrupts)
                                                             : render_on_device(settings, interrupts);
     note_uncaught(settings);

@@ -88,6 +88,7 @@ class Workspace {
     /// What has been said on this device, and is not said again.
     struct Noted {
         bool ambient = false;      ///< that a tracer has none
+        bool denoise = false;      ///< that there is nothing to denoise
         bool environment = false;  ///< that it shows less of the map than there is
         bool uncaught = false;     ///< that no shadows fall on a floor that is there for them
         bool tolerance = false;    ///< that it is too small

@@ -1,0 +1,71 @@
+// What the denoiser is guided by (shaders/denoise/denoise_guides.comp).
+#include <algorithm>
+
+#include "reference/optics.h"
+#include "reference/shader.h"
+
+namespace peelray {
+
+using namespace optics;
+
+namespace {
+
+/// Is what the surface mirrors, below its coat or by it, drawn at random?
+bool draws_mirrored(const Optics& m, const PictureSettings& settings) {
+    const bool coat = m.clearcoat > 0 && m.coat_roughness >= MIRROR_ROUGHNESS;
+    return is_sampled(settings) && (m.lobe_roughness() >= MIRROR_ROUGHNESS || coat);
+}
+
+/// Clear mirrors and glass hold no lamp, and nothing that scatters.
+bool holds_light(const Optics& m) {
+    const bool scatters = m.metallic < 1 && m.transmission < 1;
+    return m.lobe_roughness() >= MIRROR_ROUGHNESS || scatters || m.clearcoat > 0 || largest(m.sheen) > 0;
+}
+
+}  // namespace
+
+/// Which of a hit's branches the guides are to be looked for in; none: the hit has them, or there are none.
+std::optional<uint32_t> Shader::guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const {
+    const Optics& m = surface.optics;
+    if (!path.guided || m.unlit || draws_mirrored(m, context_.settings)) return {};
+    const PictureSettings& settings = context_.settings;
+    const bool lit = settings.shadow && (settings.env_mode == EnvironmentMode::sampled || !context_.lights.empty());
+    if (holds_light(m) && (lit || settings.gi > 0 || settings.ambient)) return {};
+    const auto shown = [](const Branch& branch) { return branch.traced ? luminance(branch.weight) : 0; };
+    const double first = shown(out.reflection), second = out.split.empty() ? shown(out.refraction) : 0;
+    if (std::max(first, second) == 0) return {};
+    return first >= second ? 0 : 1;
+}
+
+/// The guides of a hit; `all`: its light, `second`: of that what its second
+/// branch shows, `lit`: of lamps and the sky.
+void Shader::guide(const Surface& surface, const Path& path, const glm::dvec3& all, const glm::dvec3& second,
+                   const glm::dvec3& lit) {
+    const Optics& m = surface.optics;
+    const bool mirrors = draws_mirrored(m, context_.settings);
+    if (m.unlit || (!mirrors && !holds_light(m))) return;
+    const bool clear_coat = m.clearcoat > 0 && m.coat_roughness < MIRROR_ROUGHNESS && !m.transmits();
+    glm::dvec3 light = lit;
+    if (mirrors) {
+        light = all - m.alpha * m.emissive;
+        if (m.alpha < 1 || clear_coat) light -= second;
+    }
+    const double scatters = (1 - m.metallic) * (1 - m.transmission);
+    const glm::dvec3 front = scatters * m.base_color + m.sheen;
+    const glm::dvec3 scattered = glm::mix(front, scatters * m.behind_color, m.behind);
+    const glm::dvec3 normal = m.specified ? m.f0 : glm::dvec3(m.normal);
+    glm::dvec3 mirrored = glm::mix(normal, m.base_color, m.metallic);
+    if (m.transmits()) mirrored += m.tint();
+    const glm::dvec3 albedo =
+        glm::max(scattered + mirrored + m.clearcoat * COAT_REFLECTANCE, glm::dvec3(DENOISE_LEAST_ALBEDO));
+    guide_.light = path.weight * glm::max(light, glm::dvec3(0));
+    guide_.albedo = path.weight * m.alpha * albedo;
+    guide_.normal = surface.normal;
+    guide_.depth = float(path.length);
+    const double share = std::clamp(luminance(mirrored) / luminance(albedo), 0.0, 1.0);
+    guide_.gloss = mirrors ? float(share * (1 - m.lobe_roughness())) : 0;
+    guide_.surfaces = 1;
+    guide_.mean = float(luminance(guide_.light) / std::max(luminance(guide_.albedo), 1e-20));
+}
+
+}  // namespace peelray

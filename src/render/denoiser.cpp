@@ -1,0 +1,95 @@
+#include "render/denoiser.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "render/frame_state.h"
+
+namespace peelray {
+namespace {
+
+Groups tiles_of(const PictureSettings& settings) {
+    return groups_for(uint64_t((settings.width + 7) / 8) * ((settings.height + 7) / 8), 1);
+}
+
+}  // namespace
+
+void Denoiser::prepare(const PictureSettings& settings) {
+    const MemoryPart part(device_, "images");
+    const uint64_t pixels = pixels_of(settings);
+    ensure_size(device_, guides_, "guides of the denoiser", pixels * sizeof(DenoiseGuide));
+    ensure_size(device_, features_, "features of the denoiser", pixels * sizeof(glm::uvec4));
+    for (Buffer* signal : {&first_, &one_, &two_})
+        ensure_size(device_, *signal, "light in the denoiser", pixels * sizeof(glm::vec4));
+}
+
+uint64_t Denoiser::bytes() const {
+    return guides_.bytes() + links_.bytes() + features_.bytes() + first_.bytes() + one_.bytes() + two_.bytes();
+}
+
+void Denoiser::record_guides(FrameState& f, uint32_t sample, uint32_t first_row) {
+    ensure_size(device_, links_, "links of the denoiser",
+                std::max<uint64_t>(links_.bytes(), uint64_t(f.bands.most_pixels()) * sizeof(DenoiseLink)));
+    for (uint32_t level = 0; level <= f.last_level; level++) record_level(f, level, sample, first_row);
+}
+
+void Denoiser::record_level(FrameState& f, uint32_t level, uint32_t sample, uint32_t first_row) {
+    const PathQueues& queues = f.queues;
+    const PathLevel &here = queues.level(level), &next = queues.level(level + 1);
+    const bool kept = level > 0 || f.layered();
+    DenoiseGuideParams p{};
+    p.capacity = f.bands.pixels(first_row);
+    p.level_capacity = level > 0 ? here.capacity : p.capacity;
+    p.next_capacity = next.capacity;
+    p.light_capacity = queues.lights().capacity;
+    p.jitter = sample_position(sample);
+    p.first_row = first_row;
+    p.sample_index = sample;
+    p.samples_lobes = is_sampled(f.settings);
+    p.limit = f.settings.clamp.value_or(std::numeric_limits<float>::max());
+    f.commands.run(device_.pass("denoise_guides", {{"camera", level == 0},
+                                                   {"by_number", !kept && f.view.by_number()},
+                                                   {"kept", kept},
+                                                   f.scene.base_colors.constant()}),
+                   surface_bindings(f.scene, f.view.target.frame,
+                                    {Binding::if_used("rays", kept ? &here.rays : nullptr),
+                                     Binding::if_used("states", kept ? &here.states : nullptr),
+                                     Binding::if_used("hits", kept ? &here.hits : nullptr),
+                                     {"nodes", here.nodes},
+                                     {"branches", here.branches},
+                                     {"next_nodes", next.nodes},
+                                     {"shadow_light", queues.lights().light},
+                                     {"queue", queues.counters()},
+                                     {"visibility", f.view.target.visibility},
+                                     {"draws", f.scene.draw_table},
+                                     {"denoise_links", links_},
+                                     {"denoise_guides", guides_}}),
+                   p, groups_for(p.capacity, 64));
+}
+
+void Denoiser::record_filter(Commands& commands, const Buffer& picture, const PictureSettings& settings) {
+    DenoiseParams p{settings.width, settings.height, 1};
+    commands.begin_group("denoise");
+    commands.run(device_.pass("denoise_prepare"),
+                 {{"denoise_guides", guides_}, {"features", features_}, {"signal", first_}}, p,
+                 groups_for(pixels_of(settings), 64));
+    const Groups tiles = tiles_of(settings);
+    commands.run(device_.pass("denoise_outliers"),
+                 {{"features", features_}, {"signal", first_}, {"filtered_signal", one_}}, p, tiles);
+    commands.run(device_.pass("denoise_variance", {{"one_sample", settings.spp == 1}}),
+                 {{"features", features_}, {"signal", one_}, {"filtered_signal", two_}}, p, tiles);
+    const Buffer *from = &two_, *to = &one_;
+    for (uint32_t i = 0; i < DENOISE_ITERATIONS; i++, p.step *= 2, std::swap(from, to))
+        commands.run(device_.pass("denoise_filter", {{"last", i + 1 == DENOISE_ITERATIONS}}),
+                     {{"features", features_},
+                      {"signal", *from},
+                      {"filtered_signal", *to},
+                      {"first_signal", first_},
+                      {"denoise_guides", guides_},
+                      {"picture", picture}},
+                     p, tiles);
+    commands.end_group();
+}
+
+}  // namespace peelray
