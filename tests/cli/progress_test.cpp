@@ -29,7 +29,7 @@ class ProgressTest : public ProgramTest {
                            "64x48",  "--spp",        "65536", "--preview",  out("p.png")};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Running running = start(arguments);
-        for (int i = 0; i < 600 && !std::filesystem::exists(out("p.png")); i++)
+        for (int i = 0; i < 4800 && !std::filesystem::exists(out("p.png")); i++)
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         EXPECT_TRUE(std::filesystem::exists(out("p.png"))) << "a picture on the way";
         ::kill(running.process, signal);

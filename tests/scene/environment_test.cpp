@@ -11,7 +11,7 @@
 namespace peelray {
 namespace {
 
-std::vector<glm::vec4> noise_of(uint32_t width, uint32_t height, bool sun) {
+std::vector<glm::vec4> speckled(uint32_t width, uint32_t height, bool sun) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(0, 1);
     std::vector<glm::vec4> pixels;
@@ -33,7 +33,7 @@ void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance) {
 }
 
 TEST(Environment, AWholeTurnIsNone) {
-    const Environment image = image_environment(64, 32, noise_of(64, 32, true));
+    const Environment image = image_environment(64, 32, speckled(64, 32, true));
     for (const double degrees : {0.0, 360.0, -720.0}) {
         Environment turned = image;
         rotate(turned, degrees);
@@ -43,7 +43,7 @@ TEST(Environment, AWholeTurnIsNone) {
 }
 
 TEST(Environment, TurnsByWholeTexelsMoveThem) {
-    const std::vector<glm::vec4> pixels = noise_of(64, 32, true);
+    const std::vector<glm::vec4> pixels = speckled(64, 32, true);
     // A right angle, or the same after many more turns: 16 columns.
     for (const double degrees : {90.0, 90.0 + 360 * 12345, -270.0}) {
         Environment turned = image_environment(64, 32, pixels);
@@ -58,7 +58,7 @@ TEST(Environment, TurnsByWholeTexelsMoveThem) {
 }
 
 TEST(Environment, TurnsBetweenTexelsInterpolate) {
-    const std::vector<glm::vec4> pixels = noise_of(8, 4, false);
+    const std::vector<glm::vec4> pixels = speckled(8, 4, false);
     Environment turned = image_environment(8, 4, pixels);
     rotate(turned, 45.0 * 1.25);
     for (uint32_t y = 0; y < 4; y++)
@@ -68,7 +68,7 @@ TEST(Environment, TurnsBetweenTexelsInterpolate) {
 }
 
 TEST(Environment, IntensityScalesAllOfIt) {
-    const Environment image = image_environment(64, 32, noise_of(64, 32, true));
+    const Environment image = image_environment(64, 32, speckled(64, 32, true));
     Environment scaled = image;
     scale(scaled, 3);
     for (size_t i = 0; i < image.texels.size(); i++)
@@ -97,7 +97,7 @@ TEST(Environment, BlurredFollowsTheLevels) {
 TEST(Environment, OddSizesAreDefined) {
     for (const auto& [width, height] : {std::pair(1u, 1u), {1u, 9u}, {7u, 1u}, {100u, 3u}, {5u, 40u}}) {
         SCOPED_TRACE(width);
-        Environment image = image_environment(width, height, noise_of(width, height, false));
+        Environment image = image_environment(width, height, speckled(width, height, false));
         rotate(image, 77);
         scale(image, 2);
         for (const glm::vec4& texel : image.texels) ASSERT_TRUE(texel.x >= 0 && texel.x <= 2);

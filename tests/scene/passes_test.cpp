@@ -121,18 +121,18 @@ TEST(PassesTest, NoiseEndsIt) {
 
 TEST(PassesTest, TimeEndsIt) {
     PictureSettings settings = samples(65536);
-    settings.time_limit = 0.05;
+    settings.time_limit = 0.5;
     const PictureWatch watch;
     Passes passes(settings, watch);
     uint32_t count = 0;
     while (const uint32_t pass = passes.next()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(pass));
-        EXPECT_GT(passes.share(1), count++ > 0 ? 0.01 : 0.0) << "of the time, not of the samples";
+        EXPECT_GT(passes.share(1), count++ > 0 ? 0.001 : 0.0) << "of the time, not of the samples";
         passes.finish(no_noise, no_look);
     }
     EXPECT_EQ(passes.made().end, PictureEnd::time_limit);
     EXPECT_GE(passes.done(), 2u);
-    EXPECT_LE(passes.done(), 51u) << "no pass is begun that would not fit, but one sample";
+    EXPECT_LE(passes.done(), 501u) << "no pass is begun that would not fit, but one sample";
 }
 
 TEST(PassesTest, SaysHowMuchIsDone) {
