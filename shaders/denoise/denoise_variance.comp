@@ -28,6 +28,7 @@ float varianceAt(ivec2 p) {
     const int reach = DENOISE_VARIANCE_REACH;
     float weights = 0.0, sum = 0.0;
     vec2 above[2 * DENOISE_VARIANCE_REACH + 1];
+    for (int x = 0; x <= 2 * reach; x++) above[x] = vec2(0);  // what is not a number stays so, whatever its weight
     for (int y = -reach; y <= reach; y++) {
         vec2 before = vec2(0);
         for (int x = -reach; x <= reach; x++) {
