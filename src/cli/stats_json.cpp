@@ -204,7 +204,7 @@ static Json rates_json(const PictureStats& stats) {
     }
     const auto rate = [](uint64_t rays, double ms) { return ms > 0 ? Json(double(rays) / ms * 1e-3) : Json(nullptr); };
     const RayCounts& rays = stats.rays;
-    return {{"reflection_and_refraction", rate(rays.reflection + rays.refraction, trace_ms)},
+    return {{"reflection_and_refraction", rate(rays.reflection + rays.refraction + rays.diffuse, trace_ms)},
             {"shadow_and_ambient", rate(rays.shadow + rays.ambient, shadow_ms)}};
 }
 

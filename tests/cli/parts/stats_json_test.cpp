@@ -22,7 +22,7 @@ PictureStats traced_picture() {
     stats.height = 48;
     stats.triangles = 12;
     stats.box = {{-1, -2, -3}, {1, 2, 3}};
-    stats.rays = {3072, 100, 50, 700, 7};
+    stats.rays = {3072, 100, 50, 20, 700, 7};
     RenderStats& s = stats.render;
     s.timed = true;
     s.frame_ms = 8;
@@ -67,11 +67,12 @@ TEST(StatsJson, AllOfATracedPictureInOrder) {
     EXPECT_EQ(json["rays"], (Json{{"primary", 3072},
                                   {"reflection", 100},
                                   {"refraction", 50},
+                                  {"diffuse", 20},
                                   {"shadow", 700},
                                   {"ambient", 7},
                                   {"cut", {{"reflection", 0}, {"refraction", 0}}},
                                   {"crowded", 0}}));
-    EXPECT_DOUBLE_EQ(json["mrays_per_second"]["reflection_and_refraction"], 150 / 3e3);
+    EXPECT_DOUBLE_EQ(json["mrays_per_second"]["reflection_and_refraction"], 170 / 3e3);
     EXPECT_DOUBLE_EQ(json["mrays_per_second"]["shadow_and_ambient"], 707 / 0.5e3);
     EXPECT_EQ(json["moved"], (Json{{"cubes_rebuilt", 1}, {"cubes_reused", 1}, {"instances_transformed", 2}}));
     EXPECT_EQ(json["hit"], "exact");
