@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
-layout(constant_id = 7) const bool sampled = false;      // EFFECT_SAMPLED
+layout(constant_id = 7) const uint sampled = 2u;         // EFFECT_SAMPLED, or 2: the frame says so
 layout(constant_id = 6) const bool many_lamps = false;   // one of them is drawn
 layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
 layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
@@ -56,7 +56,7 @@ shared uint group_coats;      // of the refractions those that clear coats mirro
 shared uint group_first;
 shared uint group_first_light;
 
-bool samplesMicrofacets() { return sampled; }
+bool samplesMicrofacets() { return sampled < 2u ? sampled == 1u : (frame[0].effects & EFFECT_SAMPLED) != 0u; }
 
 vec2 randomAt(uint seed, uint purpose) {
     return randomPair(seed, params.level, params.sample_index, frame[0].sample_bits, purpose, frame[0].seed);

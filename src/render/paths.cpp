@@ -34,11 +34,13 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           Binding::if_used("shadow_media", queues.lights().media)});
     // Cones also filter what mirrors show of the environment.
     const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() ? MATERIALS_FILTERED : 0);
+    // A GPU is faster where the compiler knows; a CPU would compile for seconds once more.
+    const uint32_t sampled = f.constants.effects & EFFECT_SAMPLED ? 1 : 0;
     const Pass& pass = f.device.pass("scatter", {{"camera", camera},
                                                  {"by_number", camera && f.view.by_number()},
                                                  {"layered", layered},
                                                  {"env_sampled", f.env_sampled()},
-                                                 {"sampled", (f.constants.effects & EFFECT_SAMPLED) != 0},
+                                                 {"sampled", f.device.info().kind == "CPU" ? 2u : sampled},
                                                  {"indirect", f.indirect()},
                                                  {"emitting", f.emitting()},
                                                  {"many_lamps", f.drawn_lamps() > 0},
