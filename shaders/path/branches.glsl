@@ -77,7 +77,7 @@ vec3 fade(inout Branch branch, float roughness, float metallic) {
     if (part >= 1.0) return vec3(0);
     const vec3 seen = branch.weight * (1.0 - part) * environmentRadiance(branch.direction, roughness);
     branch.weight *= part;
-    branch.traced = branch.traced && part > 0.0;
+    branch.traced = branch.traced && part > 1e-6;  // smoothstep() may miss its end by rounding
     return seen;
 }
 

@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+layout(constant_id = 8) const bool soft_lamps = false;   // some have a size, and lobes are sampled
 layout(constant_id = 7) const uint sampled = 2u;         // EFFECT_SAMPLED, or 2: the frame says so
 layout(constant_id = 6) const bool many_lamps = false;   // one of them is drawn
 layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
@@ -132,7 +133,7 @@ Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
     Ray ray = lightRay(s, direction, seeps);
     if (lights[index].kind == 0u) return ray;
     const vec3 centre = lights[index].position - ray.origin;
-    const float radius = samplesMicrofacets() ? lights[index].sine : 0.0, along = dot(centre, direction);
+    const float radius = soft_lamps ? lights[index].sine : 0.0, along = dot(centre, direction);
     ray.tmax = along - sqrt(max(0.0, radius * radius - (dot(centre, centre) - along * along)));
     return ray;
 }
@@ -162,7 +163,7 @@ bool isBlocked(Surface s, Shade shade, SurfaceId from, vec3 direction) {
 /// Light of lamp `index`, if nothing but the surface's own triangle `from` is in its way.
 vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, SurfaceId from, uint seed, out vec3 direction) {
     vec2 random = vec2(0);
-    const bool soft = samplesMicrofacets() && lights[index].sine > 0.0;
+    const bool soft = soft_lamps && lights[index].sine > 0.0;
     if (soft) random = randomAt(seed, RANDOM_LAMP + index);
     const vec3 light = lampLight(index, s, m, shade, view, soft, random, direction);
     return light == vec3(0) || !isBlocked(s, shade, from, direction) ? light : vec3(0);

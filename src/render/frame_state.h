@@ -1,6 +1,8 @@
 // What the stages of a frame share.
 #pragma once
 
+#include <algorithm>
+
 #include "common/material.h"
 #include "render/bands.h"
 #include "render/camera_view.h"
@@ -50,6 +52,11 @@ struct FrameState {
     bool indirect() const { return settings.gi > 0 && tracer->traces(); }
     /// Lamps of which each hit draws one; 0: all count.
     uint32_t drawn_lamps() const { return is_sampled(settings) && !maps ? scene.drawn_lamps() : 0; }
+    /// Are lamps seen to have a size?
+    bool soft_lamps() const {
+        const auto has_size = [](const GpuLight& light) { return light.sine > 0; };
+        return is_sampled(settings) && !maps && std::ranges::any_of(scene.light_list, has_size);
+    }
     /// Is light looked for on emissive triangles?
     bool emitting() const { return scene.emitters() > 0 && !maps && samples_emitters(settings); }
     /// Are rays traced that may be in several media at once?

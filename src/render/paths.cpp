@@ -40,6 +40,7 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                                                  {"by_number", camera && f.view.by_number()},
                                                  {"layered", layered},
                                                  {"env_sampled", f.env_sampled()},
+                                                 {"soft_lamps", f.soft_lamps()},
                                                  {"sampled", f.device.info().kind == "CPU" ? 2u : sampled},
                                                  {"indirect", f.indirect()},
                                                  {"emitting", f.emitting()},
