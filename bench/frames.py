@@ -51,6 +51,8 @@ def part_of(name):
     """Which of PARTS a pass belongs to."""
     if name.startswith("view_") or name == "fill visible triangles":
         return "visibility"
+    if name.startswith("scatter"):
+        return "scatter"
     return "shadow" if name.startswith("trace_shadow") else name
 
 

@@ -43,7 +43,7 @@ def parts(frame):
             times[name] += entry["ms"]
         elif name.startswith("view_") or name == "fill visible triangles":
             times["visibility"] += entry["ms"]
-        elif name == "scatter" or name.startswith("trace_shadow"):
+        elif name.startswith(("scatter", "trace_shadow")):
             times["shade"] += entry["ms"]
     times["frame"] = frame["frame_ms"]
     return times

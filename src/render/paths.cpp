@@ -36,16 +36,19 @@ void record_scatter(FrameState& f, const LevelParams& p) {
     const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() ? MATERIALS_FILTERED : 0);
     // A GPU is faster where the compiler knows; a CPU would compile for seconds once more.
     const uint32_t sampled = f.constants.effects & EFFECT_SAMPLED ? 1 : 0;
-    const Pass& pass = f.device.pass("scatter", {{"camera", camera},
-                                                 {"by_number", camera && f.view.by_number()},
-                                                 {"layered", layered},
-                                                 {"env_sampled", f.env_sampled()},
-                                                 {"soft_lamps", f.soft_lamps()},
-                                                 {"sampled", f.device.info().kind == "CPU" ? 2u : sampled},
-                                                 {"indirect", f.indirect()},
-                                                 {"emitting", f.emitting()},
-                                                 {"many_lamps", f.drawn_lamps() > 0},
-                                                 {"material_kinds", kinds}});
+    std::vector<Constant> constants{{"camera", camera},
+                                    {"by_number", camera && f.view.by_number()},
+                                    {"layered", layered},
+                                    {"sampled", f.device.info().kind == "CPU" ? 2u : sampled},
+                                    {"material_kinds", kinds}};
+    const bool drawn = f.env_sampled() || f.indirect() || f.emitting() || f.drawn_lamps() > 0 || f.soft_lamps();
+    if (drawn)
+        constants.insert(constants.end(), {{"env_sampled", f.env_sampled()},
+                                           {"indirect", f.indirect()},
+                                           {"emitting", f.emitting()},
+                                           {"many_lamps", f.drawn_lamps() > 0},
+                                           {"soft_lamps", f.soft_lamps()}});
+    const Pass& pass = f.device.pass(drawn ? "scatter_drawn" : "scatter", constants);
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else
