@@ -9,6 +9,9 @@
 
 namespace peelray {
 
+/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held to.
+inline constexpr bool kOnDevice = true;
+
 inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
     RenderSettings s;
     s.width = s.height = size;
