@@ -186,7 +186,7 @@ TEST_P(Agreement, WithTheReference) {
     const bool is_evenly_lit = words[0] == "builtin:particles" || words[0].ends_with("TransmissionTest.glb");
     EXPECT_LE(exact["flip"], is_evenly_lit ? 0.003 : 0.002);
     EXPECT_LE(exact["share_different"], 0.001);
-    EXPECT_LE(planar["flip"], 0.02);
+    EXPECT_LE(planar["flip"], 0.025);  // of drawn light more pixels differ, each by its noise
     // The rays themselves are the same: what is traced is decided alike.
     for (const char* kind : {"primary", "reflection", "refraction", "shadow"}) {
         const double ours = pictures[0]["stats"]["rays"][kind], theirs = pictures[2]["stats"]["rays"][kind];
