@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "scene/mipmaps.h"
+#include "scene/picture.h"
+#include "scene/probabilities.h"
 #include "scene/sampling.h"
 
 namespace peelray {
@@ -12,19 +15,15 @@ namespace {
 /// Of the power of a material's mean texel: what a triangle counts as at least.
 constexpr double kLeastShare = 0.02;
 
-double mean_of(const glm::dvec3& color) {
-    return (color.x + color.y + color.z) / 3;
-}
-
 /// What materials emit, over their triangles.
 class Emission {
   public:
     explicit Emission(const Scene& scene) : scene_(scene), mipmaps_(scene), means_(scene.materials.size()) {
         for (size_t i = 0; i < means_.size(); i++) {
             const Material& m = scene.materials[i];
-            if (m.unlit || m.emissive == glm::vec3(0)) continue;
-            means_[i] = mean_of(glm::dvec3(m.emissive) *
-                                (m.emissive_texture ? texture_mean(m.emissive_texture.texture) : glm::dvec3(1)));
+            if (!is_emissive(m)) continue;
+            means_[i] = mean_color(glm::dvec3(m.emissive) *
+                                   (m.emissive_texture ? texture_mean(m.emissive_texture.texture) : glm::dvec3(1)));
         }
     }
 
@@ -50,7 +49,7 @@ class Emission {
         for (int i = 0; i < side * side; i++)
             sum += sample_color(level == 0 ? texture : levels[level - 1],
                                 lower + (upper - lower) * (glm::dvec2(i % side, i / side) + 0.5) / double(side), false);
-        const double mean = mean_of(glm::dvec3(m.emissive) * sum / double(side * side));
+        const double mean = mean_color(glm::dvec3(m.emissive) * sum / double(side * side));
         return std::max(mean, kLeastShare * means_[material]);
     }
 
@@ -95,12 +94,11 @@ Emitters emitters_of(const Scene& scene, const Assembly& assembly) {
             emitters.push_back({i, t, instance.first_id + assembly.ids[t], 0, 0});
         }
     }
-    double sum = 0, so_far = 0;
-    for (const double power : powers) sum += power;
+    const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+    const std::vector<float> cumulative = cumulative_shares(powers);
     for (size_t k = 0; k < emitters.size(); k++) {
-        so_far += powers[k];
         emitters[k].probability = float(powers[k] / sum);
-        emitters[k].cumulative = k + 1 < emitters.size() ? std::min(1.0f, float(so_far / sum)) : 1.0f;
+        emitters[k].cumulative = cumulative[k];
     }
     return emitters;
 }

@@ -139,7 +139,8 @@ void check_picture_name(const fs::path& path, bool exr_layers, bool transparent)
             path.string());
     if (format_of(path) == Format::hdr && transparent)
         fail(
-            "--background transparent needs an alpha channel, and '{}' has none: name it .png or .exr, or give a colour",
+            "--background transparent needs an alpha channel, and '{}' has none: name it .png or .exr, or give a "
+            "colour",
             path.string());
 }
 

@@ -9,8 +9,8 @@
 
 namespace peelray {
 
-/// Throws Error unless the name says .png, .exr or .hdr; where auxiliary pictures are to be layers of it, .exr; where it
-/// is transparent, a format with alpha.
+/// Throws Error unless the name says .png, .exr or .hdr; where auxiliary pictures are to be layers of it, .exr; where
+/// it is transparent, a format with alpha.
 void check_picture_name(const std::filesystem::path& path, bool exr_layers, bool transparent);
 
 /// What is written beside the picture NAME.png: NAME.KIND.exr, unless those are layers of the picture; of what rays

@@ -25,7 +25,8 @@ class PathTracer {
 
     /// `threads`: 0 for all cores. The picture does not depend on it. Progress receives the share done from the calling
     /// thread only, as all of `watch` is called; if it throws, all threads stop and the exception goes on.
-    /// EnvironmentMode::sampled needs Environment::distribution. Throws Error for impossible settings, naming the option.
+    /// EnvironmentMode::sampled needs Environment::distribution. Throws Error for impossible settings, naming the
+    /// option.
     Picture render(const PictureSettings& settings, const PictureWatch& watch = {}, unsigned threads = 0) const;
 
     /// "Embree 3.13.5"

@@ -14,7 +14,8 @@ CubeChoice choose_automatically(uint32_t triangles, const RenderSettings& settin
 }
 
 bool needs_rays(const RenderSettings& settings, bool has_blended) {
-    return settings.shadow || settings.ambient || settings.gi > 0 || settings.counters || (has_blended && settings.refraction) ||
+    return settings.shadow || settings.ambient || settings.gi > 0 || settings.counters ||
+           (has_blended && settings.refraction) ||
            (settings.bounces > 0 && (settings.reflection || settings.refraction));
 }
 

@@ -6,6 +6,7 @@
 #include "path/shading_numbers.h"
 #include "scene/environment.h"
 #include "scene/pi.h"
+#include "scene/sampling.h"
 
 namespace peelray {
 namespace {
@@ -57,13 +58,10 @@ struct Coarse {
 
     /// Between texels, as tracers look levels up; x and y in [0, 1].
     glm::dvec3 at(double x, double y) const {
-        const double u = x * width - 0.5, v = y * height - 0.5, left = std::floor(u), top = std::floor(v);
-        const auto texel = [&](double i, double j) {
-            const auto column = uint32_t(int(i) + int(width)) % width;
-            return texels[size_t(std::clamp(int(j), 0, int(height) - 1)) * width + column];
-        };
-        return glm::mix(glm::mix(texel(left, top), texel(left + 1, top), u - left),
-                        glm::mix(texel(left, top + 1), texel(left + 1, top + 1), u - left), v - top);
+        return bilinear(glm::dvec2(x * width, y * height), [&](int i, int j) {
+            const auto column = uint32_t(i + int(width)) % width;
+            return texels[size_t(std::clamp(j, 0, int(height) - 1)) * width + column];
+        });
     }
 };
 

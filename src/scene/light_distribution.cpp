@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "scene/environment.h"
 #include "scene/pi.h"
+#include "scene/probabilities.h"
+#include "scene/sampling.h"
 
 namespace peelray {
 namespace {
@@ -28,18 +30,11 @@ uint32_t depth_for(const Environment& environment) {
     return std::clamp(uint32_t(std::bit_width(std::bit_ceil(height))) - 1, least, most);
 }
 
-/// Mean radiance of the colours, level 0, between the texels' centres as lookups have it; `x`, `y`: in texels.
-double radiance_at(const Environment& environment, double x, double y) {
-    const int width = int(environment.width), height = int(environment.height);
-    const int left = int(std::floor(x - 0.5)), top = int(std::floor(y - 0.5));
-    const double fx = x - 0.5 - left, fy = y - 0.5 - top;
-    const auto texel = [&](int column, int row) {
-        const glm::vec4& t = environment.texels[size_t(std::clamp(row, 0, height - 1)) * size_t(width) +
-                                                size_t((column % width + width) % width)];
-        return (double(t.x) + double(t.y) + double(t.z)) / 3;
-    };
-    return (texel(left, top) * (1 - fx) + texel(left + 1, top) * fx) * (1 - fy) +
-           (texel(left, top + 1) * (1 - fx) + texel(left + 1, top + 1) * fx) * fy;
+/// Mean of the colours of the finest level's texels.
+std::vector<double> means_of(const Environment& environment) {
+    std::vector<double> means(size_t(environment.width) * environment.height);
+    for (size_t i = 0; i < means.size(); i++) means[i] = mean_color(glm::dvec3(environment.texels[i]));
+    return means;
 }
 
 }  // namespace
@@ -50,6 +45,11 @@ EnvironmentDistribution::EnvironmentDistribution(const Environment& environment)
     // what is linear on either side of a texel's centre exactly (the trapezoidal rule).
     const uint32_t across = std::max(1u, (environment.width + width - 1) / width),
                    down = std::max(1u, (environment.height + height - 1) / height);
+    const int columns = int(environment.width), rows = int(environment.height);
+    const std::vector<double> means = means_of(environment);
+    const auto mean_at = [&](int x, int y) {
+        return means[size_t(std::clamp(y, 0, rows - 1)) * size_t(columns) + size_t((x + columns) % columns)];
+    };
     std::vector<double> cells(size_t(width) * height);
     parallel_for(height, 4, [&](size_t y) {
         const double area = std::cos(kPi * double(y) / height) - std::cos(kPi * double(y + 1) / height);
@@ -60,8 +60,7 @@ EnvironmentDistribution::EnvironmentDistribution(const Environment& environment)
                 const double weight = (column % 3 == 1 ? 2.0 : 1.0) * (row % 3 == 1 ? 2.0 : 1.0);
                 const double px = x + (column / 3 + 0.5 * (column % 3)) / across,
                              py = double(y) + (row / 3 + 0.5 * (row % 3)) / down;
-                sum +=
-                    weight * radiance_at(environment, px * environment.width / width, py * environment.height / height);
+                sum += weight * bilinear(glm::dvec2(px * columns / width, py * rows / height), mean_at);
             }
             const uint32_t half = x / height;
             cells[(size_t(half) << 2 * depth) + morton(x % height, uint32_t(y))] = sum * area;

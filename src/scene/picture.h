@@ -167,6 +167,11 @@ inline bool transmits(const Material& material) {
     return material.transmission > 0 && (material.metallic < 1 || material.metallic_texture);
 }
 
+/// Does the material send light by itself, somewhere at least? What is unlit is a colour.
+inline bool is_emissive(const Material& material) {
+    return !material.unlit && material.emissive != glm::vec3(0);
+}
+
 /// Does light go on behind the material, refracted or straight, somewhere at least?
 inline bool lets_through(const Material& material) {
     return transmits(material) || material.blended;

@@ -16,9 +16,9 @@ namespace peelray {
 /// Triangles to look for light on. Dividing the scene up takes time: only where something emits.
 static Emitters emitters_in(const PosedScene& posed, const PictureSettings& settings) {
     const Scene& scene = posed.scene();
-    const bool any =
-        std::ranges::any_of(scene.materials, [](const Material& m) { return !m.unlit && m.emissive != glm::vec3(0); });
-    return any && samples_emitters(settings) ? emitters_of(scene, posed.assembly()) : Emitters{};
+    return std::ranges::any_of(scene.materials, is_emissive) && samples_emitters(settings)
+               ? emitters_of(scene, posed.assembly())
+               : Emitters{};
 }
 
 MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings, const PictureWatch& watch) {
