@@ -231,8 +231,8 @@ class InstancesTest : public DeviceTest {
 
 TEST_F(InstancesTest, OfAnyNumberAreFoundByRays) {
     using Counts = std::vector<uint32_t>;
-    for (const uint32_t count : test::effort(Counts{1, 8, 9, 64, 65, 1025},
-                                             Counts{1, 2, 7, 8, 9, 64, 65, 500, 1024, 1025, 3000})) {
+    for (const uint32_t count :
+         test::effort(Counts{1, 8, 9, 64, 65, 1025}, Counts{1, 2, 7, 8, 9, 64, 65, 500, 1024, 1025, 3000})) {
         SCOPED_TRACE(count);
         const auto placed = scatter(count, 3 * std::cbrt(float(count)), count);
         const auto world = place(placed);

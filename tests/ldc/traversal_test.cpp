@@ -100,7 +100,8 @@ TEST_F(TraversalTest, ExactHitsAreTheSameBitForBit) {
     for (const char* name : {"builtin:blob:20000", "builtin:teapots"})
         for (uint32_t resolution : {48u, 256u}) {
             // Each scene and each resolution once.
-            if (test::effort(true, false) && (resolution < 100) != (std::string_view(name) == "builtin:teapots")) continue;
+            if (test::effort(true, false) && (resolution < 100) != (std::string_view(name) == "builtin:teapots"))
+                continue;
             SCOPED_TRACE(fmt::format("{} at {}", name, resolution));
             const size_t rays = resolution < 100 ? test::effort(100, 400) : test::effort(300, 1500);
             expect_same(flatten(load_scene(name)), resolution, rays);

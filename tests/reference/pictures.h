@@ -18,7 +18,8 @@ struct RenderSettings : PictureSettings {
 };
 using RenderResult = Picture;
 
-/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held to.
+/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held
+/// to.
 inline constexpr bool kOnDevice = false;
 
 inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {

@@ -9,7 +9,8 @@
 
 namespace peelray {
 
-/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held to.
+/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held
+/// to.
 inline constexpr bool kOnDevice = true;
 
 inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
