@@ -157,8 +157,8 @@ SettingList options_of(CompareArguments& a) {
     add_choices(list, a.tracers,
                 {.name = "tracers",
                  .group = group,
-                 .help = "the tracers that render, a list out of cubemap,ldc,reference,none,khr",
-                 .expected = "a list out of cubemap,ldc,reference,none,khr, each once",
+                 .help = "the tracers that render, a list out of cubemap,ldc,cpu,reference,none,khr",
+                 .expected = "a list out of cubemap,ldc,cpu,reference,none,khr, each once",
                  .preset = "cubemap,ldc,reference"});
     add_list(list, a.hits,
              {.name = "hit",
@@ -227,8 +227,8 @@ SettingList options_of(TraceArguments& a) {
         {.name = "tracer",
          .group = "Tracing",
          .help = "ldc: in the layered depth cubes; khr: by the device's own ray tracing, where it has one",
-         .form = "ldc|reference|cubemap|khr",
-         .expected = "one of ldc|reference|cubemap|khr"},
+         .form = "ldc|cpu|reference|cubemap|khr",
+         .expected = "one of ldc|cpu|reference|cubemap|khr"},
         [](const std::string& name) {
             const auto tracer = value_named<Tracer>(name);
             return tracer == Tracer::none ? std::nullopt : tracer;

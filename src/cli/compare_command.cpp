@@ -40,7 +40,7 @@ std::string render_command(const CompareArguments& a, const std::string& name, T
     std::vector<std::string> words = {"peelray", "render", a.scene, "-o", file};
     for (const GivenOption& option : a.given)
         // --repeat measures frames of a GPU.
-        if (option.name != "repeat" || tracer != Tracer::reference)
+        if (option.name != "repeat" || !is_on_cpu(tracer))
             words.insert(words.end(), option.words.begin(), option.words.end());
     words.insert(words.end(), {"--tracer", std::string(name_of(tracer))});
     if (tracer == Tracer::ldc) words.insert(words.end(), {"--hit", name_of(hit)});
@@ -159,7 +159,7 @@ std::vector<ReportFact> facts_of(const Entry& entry, bool warm) {
     if (!entry.stats) return facts;
     const PictureStats& stats = *entry.stats;
     const RenderStats& s = stats.render;
-    const bool cpu = stats.by_reference(), khr = s.tracer == Tracer::khr;
+    const bool cpu = stats.by_cpu(), khr = s.tracer == Tracer::khr;
     facts.emplace_back("device", stats.machine.name + ", " + stats.machine.driver);
     facts.emplace_back(cpu ? "rays and shading" : warm ? "frame" : "frame, the first and cold", ms(s.frame_ms));
     if (s.build_ms > 0)

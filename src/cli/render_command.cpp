@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// Who answered for the rays, and times.
 std::string summary_of(const PictureStats& stats) {
     const RenderStats& s = stats.render;
-    if (stats.by_reference()) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
+    if (stats.by_cpu()) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
     std::string text;
     if (stats.has_cubes()) text = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
@@ -67,8 +67,8 @@ void run_render(const RenderArguments& a) {
     check_ends(a);
     check_picture_name(a.output, a.exr_layers, a.is_transparent());
     if (!a.preview.empty()) check_picture_name(a.preview, false, a.is_transparent());
-    if (a.tracing.tracer == Tracer::reference && a.repeat > 1)
-        fail("--repeat measures GPU frames; with --tracer reference leave it out");
+    if (is_on_cpu(a.tracing.tracer) && a.repeat > 1)
+        fail("--repeat measures GPU frames; with --tracer {} leave it out", name_of(a.tracing.tracer));
     const RenderSettings settings = render_settings(a);
     std::vector<fs::path> outputs = {a.output};
     for (const fs::path& path : paths_beside(a.output, a.aovs, a.exr_layers)) outputs.push_back(path);

@@ -34,7 +34,7 @@ bool wants(const RenderArguments& a, Aov aov) {
 
 MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings, const Shot& shot,
                             PictureWatch watch) {
-    Progress bar(settings.tracer == Tracer::reference ? "ray tracing" : "rendering", 1);
+    Progress bar(is_on_cpu(settings.tracer) ? "ray tracing" : "rendering", 1);
     watch.progress = [&](double share) { bar.update(share); };
     return workspace.render(settings, shot, watch);
 }

@@ -247,8 +247,8 @@ Json picture_json(const PictureStats& stats) {
     json["build_ms"] = s.build_ms;
     for (const PassTime& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["rays"] = rays_json(stats.rays);
-    if (stats.by_reference())
-        json["hit"] = "double";
+    if (stats.by_cpu())
+        json["hit"] = s.tracer == Tracer::cpu ? "single" : "double";
     else
         add_render_json(json, stats);
     return json;

@@ -7,30 +7,31 @@
 #include <mutex>
 #include <vector>
 
+#include "reference/real.h"
 #include "reference/surface.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 /// Of each material, worked out when it is first asked for; threads may ask at once. The surfaces must outlive it.
 class Albedos {
   public:
     struct Means {
-        glm::dvec3 dielectric{0};        ///< share of the dielectric part
-        double normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
-        double masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
+        Vec3 dielectric{0};            ///< share of the dielectric part
+        real normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
+        real masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
         /// To the microfacet whose grazing light, as Schlick's formula has it, is the mean.
-        double cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
-        glm::dvec3 metal(const glm::dvec3& base_color) const { return base_color * normal + grazing; }
+        real cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
+        Vec3 metal(const Vec3& base_color) const { return base_color * normal + grazing; }
     };
 
     Albedos(const Scene& scene, const Surfaces& surfaces);
 
     /// Without thin films and dispersion. `cosine`: between the view and the surface's normal.
-    Means at(const Surface& surface, double cosine) const;
+    Means at(const Surface& surface, real cosine) const;
     /// The share that the surface's clear coat mirrors; `cosine`: between the view and the coat's normal.
-    double coat(const Surface& surface, double cosine) const;
+    real coat(const Surface& surface, real cosine) const;
     /// The share that a white sheen of the surface's roughness reflects.
-    double sheen(const Surface& surface, double cosine) const;
+    real sheen(const Surface& surface, real cosine) const;
 
   private:
     static constexpr size_t steps = 64;  ///< in the square root of the cosine
@@ -43,16 +44,16 @@ class Albedos {
     struct SheenTable {
         static constexpr size_t steps = 256;  ///< in the square root of the cosine
         std::once_flag made;
-        std::array<double, steps + 1> entries;
+        std::array<real, steps + 1> entries;
     };
-    static double look_up(SheenTable& table, double alpha, double cosine);
+    static real look_up(SheenTable& table, real alpha, real cosine);
 
     /// Materials whose roughness a texture changes, or whose lobes are stretched where there are tangents, have a table
     /// for each of these, in the square root of the roughness; the others one, for their own.
     static constexpr size_t roughnesses = 65;
-    Means look_up(Table& table, const Optics& constants, double roughness, double cosine) const;
+    Means look_up(Table& table, const Optics& constants, real roughness, real cosine) const;
     /// Between those of the roughnesses around; `first`: of as many tables.
-    Means between(Table* first, const Optics& constants, double roughness, double cosine) const;
+    Means between(Table* first, const Optics& constants, real roughness, real cosine) const;
 
     const Surfaces& surfaces_;
     std::vector<size_t> first_table_;  ///< per material, and the end
@@ -63,4 +64,4 @@ class Albedos {
     std::unique_ptr<SheenTable[]> sheens_;
 };
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

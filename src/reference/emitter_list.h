@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "reference/real.h"
 #include "scene/emitters.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 class EmitterList {
   public:
@@ -15,13 +16,13 @@ class EmitterList {
 
     bool empty() const { return emitters_.empty(); }
     /// Each as often as its probability says; `random` in [0, 1). Of none there is nothing to choose.
-    const Emitter& choose(double random) const;
+    const Emitter& choose(real random) const;
     /// Of a triangle being chosen; 0: it is none of them.
-    double probability(uint32_t triangle) const { return empty() ? 0 : double(probabilities_[triangle]); }
+    real probability(uint32_t triangle) const { return empty() ? 0 : real(probabilities_[triangle]); }
 
   private:
     Emitters emitters_;
     std::vector<float> probabilities_;  ///< by triangle; empty where nothing emits
 };
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

@@ -3,46 +3,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/infinity.h"
 #include "reference/shader.h"
 #include "reference/sheen.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 using namespace optics;
 
 /// What of the environment's light comes along a ray; the rest its hit has found by drawing directions to the
 /// environment (Veach and Guibas, Optimally Combining Sampling Techniques, 1995: the balance heuristic).
-double Shader::environment_share(const glm::dvec3& direction, double density) const {
+real Shader::environment_share(const Vec3& direction, real density) const {
     if (density == 0 || !context_.samples_environment()) return 1;
     return density < 0 ? 0 : density / (density + context_.surroundings.density(direction));
 }
 
 /// A ray that brings all of the light sees its mean over the cone: a sun's disc in a curved mirror would be noise. What
 /// is shared must be the same light from both sides.
-double Shader::environment_blur(const Cone& cone, double density) const {
+real Shader::environment_blur(const Cone& cone, real density) const {
     if (!context_.samples_environment() || density != 0) return 0;
     // All of a pixel's cone, not a sample's share of it: a sun that fills a part of it is seen by that part.
-    return context_.surroundings.blur_of(cone.spread * std::sqrt(double(context_.settings.spp)));
+    return context_.surroundings.blur_of(cone.spread * std::sqrt(real(context_.settings.spp)));
 }
 
 Shader::BothSides Shader::scattered(const Lit& at) {
     const Optics& m = at.surface.optics;
-    const double diffuse = (1 - m.metallic) * (1 - m.transmission) / pi,
-                 below = diffuse * at.seen.scattered * at.seen.sheen * (1 - at.seen.coat);
+    const real diffuse = (1 - m.metallic) * (1 - m.transmission) / pi,
+               below = diffuse * at.seen.scattered * at.seen.sheen * (1 - at.seen.coat);
     return {below * (1 - m.behind) * m.base_color, below * m.behind * m.behind_color};
 }
 
 /// Share of light from a direction that no ray of the path brings: what is scattered, times the cosine.
-glm::dvec3 Shader::scattered_from(const Lit& at, const glm::dvec3& direction) {
+Vec3 Shader::scattered_from(const Lit& at, const Vec3& direction) {
     const Surface& s = at.surface;
     const Optics& m = s.optics;
-    const double n_l = glm::dot(s.normal, direction);
+    const real n_l = glm::dot(s.normal, direction);
     const auto [front, back] = scattered(at);
     if (n_l <= 0) return back * -n_l;
-    glm::dvec3 share = front * n_l;
+    Vec3 share = front * n_l;
     if (largest(m.sheen) > 0) {
-        const double n_h = glm::dot(s.normal, glm::normalize(direction - at.path.direction));
+        const real n_h = glm::dot(s.normal, glm::normalize(direction - at.path.direction));
         share += (1 - at.seen.coat) * m.sheen *
                  sheen::lobe(sheen::alpha_of(m.sheen_roughness), n_h, std::max(GRAZING_COSINE, at.seen.n_v), n_l);
     }
@@ -51,26 +50,25 @@ glm::dvec3 Shader::scattered_from(const Lit& at, const glm::dvec3& direction) {
 
 /// Of light from a drawn direction, what the lobes mirror over the density of such directions: the light's, and that of
 /// the lobe's own samples, which bring the rest if they are followed.
-glm::dvec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const {
+Vec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const {
     const Surface& s = at.surface;
     const Optics& m = s.optics;
     const bool through = m.behind > 0 && glm::dot(s.normal, drawn.direction) < 0;
-    if (!context_.sampled() || m.shares_branch() || through) return glm::dvec3(0);
-    const glm::dvec3 view = -at.path.direction;
-    const double v_h = std::clamp(glm::dot(view, glm::normalize(view + drawn.direction)), 0.0, 1.0);
+    if (!context_.sampled() || m.shares_branch() || through) return Vec3(0);
+    const Vec3 view = -at.path.direction;
+    const real v_h = std::clamp(glm::dot(view, glm::normalize(view + drawn.direction)), 0.0, 1.0);
     const bool leaving = m.leaves(s.front);
-    glm::dvec3 sum(0);
-    if (const double density = lobe_of(s).density(view, drawn.direction); density > 0) {
+    Vec3 sum(0);
+    if (const real density = lobe_of(s).density(view, drawn.direction); density > 0) {
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
-        const double traced = !followed ? 0 : m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
+        const real traced = !followed ? 0 : m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
         sum = specular(s, at.path, fresnel, at.seen.n_v, drawn.direction) * at.seen.sheen * (1 - at.seen.coat) /
               (drawn.density + traced * density);
     }
     if (m.clearcoat == 0) return sum;
     const Lobe coat = coat_lobe(s);
-    const double density = coat.density(view, drawn.direction),
-                 traced = followed ? traced_part(m.coat_roughness, 0) : 0;
+    const real density = coat.density(view, drawn.direction), traced = followed ? traced_part(m.coat_roughness, 0) : 0;
     return sum +
            coat_reflectance(m, v_h) * density * coat.masking(drawn.direction) / (drawn.density + traced * density);
 }
@@ -80,29 +78,29 @@ bool Shader::scatters(const Optics& m) {
 }
 
 /// Share of the directions around the normal that go behind the surface.
-static double share_behind(const Optics& m) {
+static real share_behind(const Optics& m) {
     return m.metallic < 1 && m.transmission < 1 ? m.behind : 0;
 }
 
-glm::dvec3 Shader::draw_scattered(const Lit& at, glm::dvec2 random) {
-    const double behind = share_behind(at.surface.optics);
+Vec3 Shader::draw_scattered(const Lit& at, Vec2 random) {
+    const real behind = share_behind(at.surface.optics);
     const bool back = random.x < behind;
     random.x = back ? random.x / behind : (random.x - behind) / (1 - behind);
     return cosine_direction(at.surface.normal, random) * (back ? -1.0 : 1.0);
 }
 
 /// Of the directions that draw_scattered() returns.
-double Shader::scattered_density(const Lit& at, const glm::dvec3& direction) {
-    const double n_l = glm::dot(at.surface.normal, direction), behind = share_behind(at.surface.optics);
+real Shader::scattered_density(const Lit& at, const Vec3& direction) {
+    const real n_l = glm::dot(at.surface.normal, direction), behind = share_behind(at.surface.optics);
     return (n_l > 0 ? 1 - behind : behind) * std::abs(n_l) / pi;
 }
 
 /// One direction per hit: half of them by the environment's brightness, half by the cosine where the surface scatters
 /// light at all.
-glm::dvec3 Shader::environment_light(const Lit& at) {
+Vec3 Shader::environment_light(const Lit& at) {
     const bool scattering = scatters(at.surface.optics);
-    const double by_brightness = scattering ? 0.5 : 1;
-    glm::dvec2 u = random(at.path, RANDOM_ENVIRONMENT);
+    const real by_brightness = scattering ? 0.5 : 1;
+    Vec2 u = random(at.path, RANDOM_ENVIRONMENT);
     const bool bright = u.x < by_brightness;
     u.x = bright ? u.x / by_brightness : (u.x - by_brightness) / (1 - by_brightness);
     Surroundings::Drawn drawn{};
@@ -112,14 +110,14 @@ glm::dvec3 Shader::environment_light(const Lit& at) {
         drawn.direction = draw_scattered(at, u);
         drawn.density = context_.surroundings.density(drawn.direction);
     }
-    const double mixed = by_brightness * drawn.density + (1 - by_brightness) * scattered_density(at, drawn.direction);
-    glm::dvec3 share(0);
+    const real mixed = by_brightness * drawn.density + (1 - by_brightness) * scattered_density(at, drawn.direction);
+    Vec3 share(0);
     if (scattering && mixed > 0) share = scattered_from(at, drawn.direction) / mixed;
     if (bright) share += mirrored_from(at, drawn, true) / by_brightness;
-    if (share == glm::dvec3(0)) return share;
-    const glm::dvec3 light = share * context_.surroundings.radiance(drawn.direction, 0);
-    if (light == glm::dvec3(0)) return light;
-    return light * arriving(at, start_to(at, drawn.direction), drawn.direction, infinity);
+    if (share == Vec3(0)) return share;
+    const Vec3 light = share * context_.surroundings.radiance(drawn.direction, 0);
+    if (light == Vec3(0)) return light;
+    return light * arriving(at, start_to(at, drawn.direction), drawn.direction, endless);
 }
 
 /// What light other surfaces send to this one to be scattered: one ray stands for all of it.
@@ -127,8 +125,8 @@ Shader::Branch Shader::diffuse_branch(const Lit& at) const {
     const Surface& s = at.surface;
     Branch branch;
     if (at.path.scattered >= context_.settings.gi || !scatters(s.optics)) return branch;
-    const glm::dvec3 direction = draw_scattered(at, random(at.path, RANDOM_DIFFUSE));
-    const double density = scattered_density(at, direction);
+    const Vec3 direction = draw_scattered(at, random(at.path, RANDOM_DIFFUSE));
+    const real density = scattered_density(at, direction);
     if (density == 0) return branch;
     const bool back = glm::dot(s.normal, direction) < 0;
     branch.weight = s.optics.alpha * scattered_from(at, direction) / density;
@@ -141,4 +139,4 @@ Shader::Branch Shader::diffuse_branch(const Lit& at) const {
     return branch;
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

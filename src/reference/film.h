@@ -4,13 +4,15 @@
 
 #include <glm/glm.hpp>
 
-namespace peelray::film {
+#include "reference/real.h"
+
+namespace peelray::inline PRECISION::film {
 
 /// Of white light, what of each channel is reflected, [0, 1]: from air by a film of this index and thickness (nm) on
 /// something whose index for the channel is `base`; `cosine` in [0, 1]: to the normal, in air.
-glm::dvec3 reflectance(double cosine, double index, double thickness, const glm::dvec3& base);
+Vec3 reflectance(real cosine, real index, real thickness, const Vec3& base);
 
 /// Index of what reflects this much at normal incidence in air.
-glm::dvec3 index_of(const glm::dvec3& reflectance);
+Vec3 index_of(const Vec3& reflectance);
 
-}  // namespace peelray::film
+}  // namespace peelray::inline PRECISION::film

@@ -4,7 +4,7 @@
 #include "reference/optics.h"
 #include "reference/shader.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 using namespace optics;
 
@@ -32,40 +32,38 @@ std::optional<uint32_t> Shader::guiding_branch(const Surface& surface, const Pat
     const bool lit = settings.shadow && (settings.env_mode == EnvironmentMode::sampled || !context_.lights.empty());
     if (holds_light(m) && (lit || settings.gi > 0 || settings.ambient)) return {};
     const auto shown = [](const Branch& branch) { return branch.traced ? luminance(branch.weight) : 0; };
-    const double first = shown(out.reflection), second = out.split.empty() ? shown(out.refraction) : 0;
+    const real first = shown(out.reflection), second = out.split.empty() ? shown(out.refraction) : 0;
     if (std::max(first, second) == 0) return {};
     return first >= second ? 0 : 1;
 }
 
 /// The guides of a hit; `all`: its light, `second`: of that what its second
 /// branch shows, `lit`: of lamps and the sky.
-void Shader::guide(const Surface& surface, const Path& path, const glm::dvec3& all, const glm::dvec3& second,
-                   const glm::dvec3& lit) {
+void Shader::guide(const Surface& surface, const Path& path, const Vec3& all, const Vec3& second, const Vec3& lit) {
     const Optics& m = surface.optics;
     const bool mirrors = draws_mirrored(m, context_.settings);
     if (m.unlit || (!mirrors && !holds_light(m))) return;
     const bool clear_coat = m.clearcoat > 0 && m.coat_roughness < MIRROR_ROUGHNESS && !m.transmits();
-    glm::dvec3 light = lit;
+    Vec3 light = lit;
     if (mirrors) {
         light = all - m.alpha * m.emissive;
         if (m.alpha < 1 || clear_coat) light -= second;
     }
-    const double scatters = (1 - m.metallic) * (1 - m.transmission);
-    const glm::dvec3 front = scatters * m.base_color + m.sheen;
-    const glm::dvec3 scattered = glm::mix(front, scatters * m.behind_color, m.behind);
-    const glm::dvec3 normal = m.specified ? m.f0 : glm::dvec3(m.normal);
-    glm::dvec3 mirrored = glm::mix(normal, m.base_color, m.metallic);
+    const real scatters = (1 - m.metallic) * (1 - m.transmission);
+    const Vec3 front = scatters * m.base_color + m.sheen;
+    const Vec3 scattered = glm::mix(front, scatters * m.behind_color, m.behind);
+    const Vec3 normal = m.specified ? m.f0 : Vec3(m.normal);
+    Vec3 mirrored = glm::mix(normal, m.base_color, m.metallic);
     if (m.transmits()) mirrored += m.tint();
-    const glm::dvec3 albedo =
-        glm::max(scattered + mirrored + m.clearcoat * COAT_REFLECTANCE, glm::dvec3(DENOISE_LEAST_ALBEDO));
-    guide_.light = path.weight * glm::max(light, glm::dvec3(0));
+    const Vec3 albedo = glm::max(scattered + mirrored + m.clearcoat * COAT_REFLECTANCE, Vec3(DENOISE_LEAST_ALBEDO));
+    guide_.light = path.weight * glm::max(light, Vec3(0));
     guide_.albedo = path.weight * m.alpha * albedo;
     guide_.normal = surface.normal;
     guide_.depth = float(path.length);
-    const double share = std::clamp(luminance(mirrored) / luminance(albedo), 0.0, 1.0);
+    const real share = std::clamp(luminance(mirrored) / luminance(albedo), 0.0, 1.0);
     guide_.gloss = mirrors ? float(share * (1 - m.lobe_roughness())) : 0;
     guide_.surfaces = 1;
     guide_.mean = float(luminance(guide_.light) / std::max(luminance(guide_.albedo), 1e-20));
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

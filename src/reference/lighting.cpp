@@ -2,19 +2,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/infinity.h"
 #include "reference/optics.h"
 #include "reference/shader.h"
 #include "reference/sheen.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 using namespace optics;
 
 namespace {
 
 /// The lobe of GGX, times the cosine; less Fresnel's share.
-double highlight(const Lobe& lobe, const glm::dvec3& view, const glm::dvec3& to_light) {
+real highlight(const Lobe& lobe, const Vec3& view, const Vec3& to_light) {
     return lobe.density(view, to_light) * lobe.masking(to_light);
 }
 
@@ -28,7 +27,7 @@ Shader::Seen Shader::seen(const Surface& s, const Path& path) const {
     seen.sheen = below_sheen(s, seen.n_v);
     if (m.metallic == 1 || m.transmission == 1) return seen;
     // The share that scatter() gives to the reflection.
-    glm::dvec3 mirrored = m.wall_reflectance(seen.n_v, m.leaves(s.front), Channel::green);
+    Vec3 mirrored = m.wall_reflectance(seen.n_v, m.leaves(s.front), Channel::green);
     if (m.lobe_roughness() >= MIRROR_ROUGHNESS) {
         if (!m.transmits())
             mirrored = mean_reflectance(s, seen.n_v).dielectric;
@@ -40,16 +39,15 @@ Shader::Seen Shader::seen(const Surface& s, const Path& path) const {
 }
 
 /// The lobe's share of a lamp's light, times the cosine; `fresnel`: what its microfacet reflects.
-glm::dvec3 Shader::specular(const Surface& s, const Path& path, const Parts& fresnel, double n_v,
-                            const glm::dvec3& to_light) const {
+Vec3 Shader::specular(const Surface& s, const Path& path, const Parts& fresnel, real n_v, const Vec3& to_light) const {
     const Optics& m = s.optics;
     const Lobe lobe = lobe_of(s);
-    const glm::dvec3 half = glm::normalize(to_light - path.direction);
-    const double shape = highlight(lobe, -path.direction, to_light);
+    const Vec3 half = glm::normalize(to_light - path.direction);
+    const real shape = highlight(lobe, -path.direction, to_light);
     const bool sampled = context_.sampled();
     const Parts gained = fresnel * compensation(s, n_v);
     if (!m.transmits() || !compensates(m) || !sampled) return gained.of(m) * shape;
-    const double kept = lobe.masking(to_light);
+    const real kept = lobe.masking(to_light);
     const auto onward = m.thin ? std::optional(to_light - 2 * glm::dot(to_light, s.normal) * s.normal)
                                : refract_ray(path.direction, half, m.leaves(s.front) ? 1 / m.ior : m.ior);
     const Shares glass = rough_glass(fresnel.dielectric, kept, onward ? lobe.masking(-*onward) : 0);
@@ -58,14 +56,14 @@ glm::dvec3 Shader::specular(const Surface& s, const Path& path, const Parts& fre
 
 /// Reflected share of light from `to_light`, times the cosine: Lambert below GGX, both below the sheen, all below the
 /// coat. From behind, light comes through as by Lambert's law. Lamps do not disperse: the middle index counts.
-glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& seen, const glm::dvec3& to_light) const {
+Vec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& seen, const Vec3& to_light) const {
     const Optics& m = s.optics;
-    const glm::dvec3 view = -path.direction, half = glm::normalize(view + to_light);
-    const double n_l = glm::dot(s.normal, to_light), v_h = std::clamp(glm::dot(view, half), 0.0, 1.0);
-    const double diffuse = (1 - m.metallic) * (1 - m.transmission) / pi;
+    const Vec3 view = -path.direction, half = glm::normalize(view + to_light);
+    const real n_l = glm::dot(s.normal, to_light), v_h = std::clamp(glm::dot(view, half), 0.0, 1.0);
+    const real diffuse = (1 - m.metallic) * (1 - m.transmission) / pi;
     if (m.behind > 0 && n_l < 0)
         return diffuse * m.behind * seen.scattered * seen.sheen * (1 - seen.coat) * m.behind_color * -n_l;
-    glm::dvec3 share(0);
+    Vec3 share(0);
     if (n_l > 0) {
         const bool leaving = m.leaves(s.front);
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
@@ -83,12 +81,12 @@ glm::dvec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& s
 }
 
 /// `sky`: that of the environment where no direction to it is drawn, which else a diffuse ray brings.
-glm::dvec3 Shader::direct_light(const Lit& at, bool sky) {
-    glm::dvec3 sum(0);
+Vec3 Shader::direct_light(const Lit& at, bool sky) {
+    Vec3 sum(0);
     for (uint32_t i = 0; i < context_.lights.size(); i++) {
         if (context_.draws_lamps() && i - context_.lamps.first < context_.lamps.count) continue;
         const LampLight found = lamp_light(i, at);
-        if (found.light != glm::dvec3(0)) sum += found.light * lamp_visibility(found, at);
+        if (found.light != Vec3(0)) sum += found.light * lamp_visibility(found, at);
     }
     if (context_.draws_lamps()) sum += drawn_lamp(at);
     if (context_.samples_emitters()) sum += emitter_light(at);
@@ -99,66 +97,66 @@ glm::dvec3 Shader::direct_light(const Lit& at, bool sky) {
 /// What a lamp would bring.
 Shader::LampLight Shader::lamp_light(uint32_t index, const Lit& at) const {
     const auto [irradiance, direction] = incidence(context_.lights[index], index, at);
-    if (irradiance == glm::dvec3(0)) return {index, direction, glm::dvec3(0)};
+    if (irradiance == Vec3(0)) return {index, direction, Vec3(0)};
     return {index, direction, irradiance * reflectance(at.surface, at.path, at.seen, direction)};
 }
 
-glm::dvec3 Shader::lamp_visibility(const LampLight& found, const Lit& at) {
+Vec3 Shader::lamp_visibility(const LampLight& found, const Lit& at) {
     const Start start = start_to(at, found.direction);
     return arriving(at, start, found.direction, reach(context_.lights[found.index], start.point, found.direction));
 }
 
 /// One of many lamps for all: of some that are tried, one in proportion to what each would bring over how likely it was
 /// tried (Talbot et al. 2005). What the surface's own triangle hides is not tried.
-glm::dvec3 Shader::drawn_lamp(const Lit& at) {
-    const glm::dvec2 u = random(at.path, RANDOM_LAMP_CHOICE);
+Vec3 Shader::drawn_lamp(const Lit& at) {
+    const Vec2 u = random(at.path, RANDOM_LAMP_CHOICE);
     const std::vector<float>& cumulative = context_.lamps.cumulative;
     LampLight drawn{};
-    double sum = 0, scale = 0, choice = u.y;
+    real sum = 0, scale = 0, choice = u.y;
     for (int k = 0; k < LAMPS_TRIED; k++) {
         const auto chosen = std::upper_bound(cumulative.begin(), cumulative.end() - 1, float((k + u.x) / LAMPS_TRIED));
-        const double probability = *chosen - (chosen == cumulative.begin() ? 0.0f : *(chosen - 1));
+        const real probability = *chosen - (chosen == cumulative.begin() ? 0.0f : *(chosen - 1));
         const LampLight tried = lamp_light(context_.lamps.first + uint32_t(chosen - cumulative.begin()), at);
-        const glm::dvec3 light = glm::abs(tried.light);
-        const double bright = light.x + light.y + light.z;
+        const Vec3 light = glm::abs(tried.light);
+        const real bright = light.x + light.y + light.z;
         if (probability == 0 || bright == 0 || hides_itself(at, tried.direction)) continue;
         sum += bright / probability;
-        const double part = bright / probability / sum;
+        const real part = bright / probability / sum;
         const bool taken = choice < part;
         choice = taken ? choice / part : (choice - part) / (1 - part);
         if (!taken) continue;
         drawn = tried;
         scale = 1 / bright;
     }
-    return sum > 0 ? drawn.light * (scale * sum / LAMPS_TRIED) * lamp_visibility(drawn, at) : glm::dvec3(0);
+    return sum > 0 ? drawn.light * (scale * sum / LAMPS_TRIED) * lamp_visibility(drawn, at) : Vec3(0);
 }
 
 /// Of a lamp with a size, from one of the directions in which it is seen; `index`: of the lamp.
 Shader::Incidence Shader::incidence(const Light& light, uint32_t index, const Lit& at) const {
-    const double radius = radius_of(light);
-    Incidence in{light.color, -glm::dvec3(light.direction)};
-    double sine = std::sin(radius);  // of half the angle in which the lamp is seen
+    const real radius = radius_of(light);
+    Incidence in{light.color, -Vec3(light.direction)};
+    real sine = std::sin(radius);  // of half the angle in which the lamp is seen
     if (light.kind != Light::Kind::directional) {
-        const glm::dvec3 to_light = glm::dvec3(light.position) - at.surface.position;
-        const double distance = glm::length(to_light);
+        const Vec3 to_light = Vec3(light.position) - at.surface.position;
+        const real distance = glm::length(to_light);
         if (distance == 0) return {};
         in.direction = to_light / distance;
         sine = std::min(1.0, radius / distance);
         // KHR_lights_punctual: inverse square with a smooth end at the range, a squared ramp between the cones.
-        double strength = 1 / (distance * distance);
-        if (std::isfinite(light.range)) strength *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
+        real strength = 1 / (distance * distance);
+        if (std::isfinite(light.range)) strength *= std::clamp(1 - square(square(distance / light.range)), 0.0, 1.0);
         if (light.kind == Light::Kind::spot) {
-            const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
-            const double cosine = glm::dot(glm::dvec3(light.direction), -in.direction);
-            const double ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
+            const real inner = std::cos(real(light.inner_cone)), outer = std::cos(real(light.outer_cone));
+            const real cosine = glm::dot(Vec3(light.direction), -in.direction);
+            const real ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
             strength *= ramp * ramp;
         }
         in.irradiance *= strength;
     }
-    if (sine == 0 || in.irradiance == glm::dvec3(0)) return in;
-    const glm::dvec2 u = random(at.path, RANDOM_LAMP + index);
-    const double least = std::sqrt(1 - sine * sine), cosine = 1 - u.x * (1 - least), phi = 2 * pi * u.y;
-    const double across = std::sqrt(1 - cosine * cosine);
+    if (sine == 0 || in.irradiance == Vec3(0)) return in;
+    const Vec2 u = random(at.path, RANDOM_LAMP + index);
+    const real least = std::sqrt(1 - sine * sine), cosine = 1 - u.x * (1 - least), phi = 2 * pi * u.y;
+    const real across = std::sqrt(1 - cosine * cosine);
     const auto [t, b] = tangents(in.direction);
     in.direction = t * (across * std::cos(phi)) + b * (across * std::sin(phi)) + in.direction * cosine;
     in.irradiance *= 2 / (1 + least);  // a ball's light from all over its disc, as from its cone
@@ -166,31 +164,31 @@ Shader::Incidence Shader::incidence(const Light& light, uint32_t index, const Li
 }
 
 /// How far a ray along a direction that incidence() has found goes up to the lamp: to the near side of its ball.
-double Shader::reach(const Light& light, const glm::dvec3& start, const glm::dvec3& direction) const {
-    if (light.kind == Light::Kind::directional) return infinity;
-    const glm::dvec3 to_light = glm::dvec3(light.position) - start;
-    const double radius = radius_of(light), along = glm::dot(to_light, direction);
-    const double inside2 = radius * radius - glm::dot(to_light, to_light) + along * along;
+real Shader::reach(const Light& light, const Vec3& start, const Vec3& direction) const {
+    if (light.kind == Light::Kind::directional) return endless;
+    const Vec3 to_light = Vec3(light.position) - start;
+    const real radius = radius_of(light), along = glm::dot(to_light, direction);
+    const real inside2 = radius * radius - glm::dot(to_light, to_light) + along * along;
     return radius > 0 ? along - std::sqrt(std::max(0.0, inside2)) : along;
 }
 
-Shader::Start Shader::start_to(const Lit& at, const glm::dvec3& direction) {
+Shader::Start Shader::start_to(const Lit& at, const Vec3& direction) {
     const Surface& s = at.surface;
     const bool from_behind = s.optics.behind > 0 && glm::dot(s.normal, direction) < 0;
     return {from_behind ? s.start(s.position, direction) : s.lit_start(), from_behind};
 }
 
 /// A triangle that turns away from the light is itself in the way where it is no part of a bulge.
-bool Shader::hides_itself(const Lit& at, const glm::dvec3& direction) const {
+bool Shader::hides_itself(const Lit& at, const Vec3& direction) const {
     const Surface& s = at.surface;
     const bool from_behind = s.optics.behind > 0 && glm::dot(s.normal, direction) < 0;
     return context_.settings.shadow && !from_behind && context_.surfaces.blocks_itself(s, at.triangle, direction);
 }
 
 /// Share of the light that arrives from as far away.
-glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3& direction, double distance) {
-    if (!context_.settings.shadow) return glm::dvec3(1);
-    if (hides_itself(at, direction)) return glm::dvec3(0);
+Vec3 Shader::arriving(const Lit& at, const Start& start, const Vec3& direction, real distance) {
+    if (!context_.settings.shadow) return Vec3(1);
+    if (hides_itself(at, direction)) return Vec3(0);
     rays_.shadow++;
     return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
 }
@@ -198,82 +196,81 @@ glm::dvec3 Shader::arriving(const Lit& at, const Start& start, const glm::dvec3&
 /// Of a surface that is to show nothing but shadows: the share of its light that arrives, of all lamps, also those that
 /// stand for a part of a sampled image, and of the sky. Directions drawn by an environment's brightness would make that
 /// share noisy even where all arrives: one drawn by the cosine tells whether the sky is seen.
-glm::dvec3 Shader::left_by_shadows(const Lit& at) {
+Vec3 Shader::left_by_shadows(const Lit& at) {
     const Surface& s = at.surface;
     const PictureSettings& settings = context_.settings;
-    const glm::dvec3 sky = scattered(at).front * context_.surroundings.irradiance(s.normal);
-    glm::dvec3 all = sky, light = sky;
+    const Vec3 sky = scattered(at).front * context_.surroundings.irradiance(s.normal);
+    Vec3 all = sky, light = sky;
     if ((settings.ambient || (context_.samples_environment() && settings.shadow)) && largest(sky) > 0) {
-        const glm::dvec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
-        const glm::dvec3 direction = above_surface(sampled, s.geometric);
+        const Vec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
+        const Vec3 direction = above_surface(sampled, s.geometric);
         rays_.ambient++;
-        light *= visibility(s.start(s.shadow_start, direction), direction, infinity, at.triangle, at.path.media);
+        light *= visibility(s.start(s.shadow_start, direction), direction, endless, at.triangle, at.path.media);
     }
     for (uint32_t i = 0; i < context_.all_lights.size(); i++) {
         const Light& lamp = context_.all_lights[i];
         const auto [irradiance, direction] = incidence(lamp, i, at);
-        if (irradiance == glm::dvec3(0)) continue;
-        const glm::dvec3 reflected = irradiance * reflectance(s, at.path, at.seen, direction);
-        if (reflected == glm::dvec3(0)) continue;
+        if (irradiance == Vec3(0)) continue;
+        const Vec3 reflected = irradiance * reflectance(s, at.path, at.seen, direction);
+        if (reflected == Vec3(0)) continue;
         const Start start = start_to(at, direction);
         all += reflected;
         light += reflected * arriving(at, start, direction, reach(lamp, start.point, direction));
     }
-    glm::dvec3 left(1);
+    Vec3 left(1);
     for (int c = 0; c < 3; c++)
         if (all[c] > 0) left[c] = light[c] / all[c];
     return left;
 }
 
 /// What the surface mirrors is not available for diffuse light.
-glm::dvec3 Shader::sky_light(const Lit& at) {
+Vec3 Shader::sky_light(const Lit& at) {
     const Surface& s = at.surface;
     const Optics& m = s.optics;
     auto [front, back] = scattered(at);
     if (largest(m.sheen) > 0) front += m.sheen * (1 - at.seen.coat) * context_.albedos.sheen(s, at.seen.n_v) / pi;
-    const double open = context_.settings.ambient ? 1 : m.occlusion;  // or rays find out
+    const real open = context_.settings.ambient ? 1 : m.occlusion;  // or rays find out
     front *= open * context_.surroundings.irradiance(s.normal);
     back *= open * context_.surroundings.irradiance(-s.normal);
     if (!context_.settings.ambient) return front + back;
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
-    const glm::dvec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
-    const glm::dvec3 direction = above_surface(sampled, s.geometric);
+    const Vec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
+    const Vec3 direction = above_surface(sampled, s.geometric);
     if (largest(front) > 0) {
         rays_.ambient++;
-        front *= visibility(s.start(s.shadow_start, direction), direction, infinity, at.triangle, at.path.media);
+        front *= visibility(s.start(s.shadow_start, direction), direction, endless, at.triangle, at.path.media);
     }
     if (largest(back) > 0) {
         rays_.ambient++;
-        back *= visibility(s.start(s.position, -direction), -direction, infinity, at.triangle, at.behind);
+        back *= visibility(s.start(s.position, -direction), -direction, endless, at.triangle, at.behind);
     }
     return front + back;
 }
 
 /// Share of the light that arrives from `distance` away: 0 or 1, or the tint of the glass in between.
-glm::dvec3 Shader::visibility(const glm::dvec3& start, const glm::dvec3& direction, double distance, uint32_t triangle,
-                              Media media) const {
-    glm::dvec3 share(1);
+Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media) const {
+    Vec3 share(1);
     uint32_t skip = triangle;
-    double from = 0;
+    real from = 0;
     for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
         Meeting meeting = walk().next({start, from, direction, distance}, skip, media, true);
-        const OracleHit& hit = meeting.hit;
+        const Hit& hit = meeting.hit;
         share *= meeting.passed;
         if (!hit.hit()) return share;
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
         const Optics& m = s.optics;
-        if (!m.transmits() && m.alpha == 1) return glm::dvec3(0);
-        const double cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        const glm::dvec3 tint = (1.0 - reflectance_at(meeting, s, cosine, Channel::green).dielectric) * m.tint();
-        share *= glm::mix(glm::dvec3(1), tint, m.alpha) * meeting.beside;
+        if (!m.transmits() && m.alpha == 1) return Vec3(0);
+        const real cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
+        const Vec3 tint = (1.0 - reflectance_at(meeting, s, cosine, Channel::green).dielectric) * m.tint();
+        share *= glm::mix(Vec3(1), tint, m.alpha) * meeting.beside;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         share *= transmittance(meeting.wall ? meeting.from : meeting.before.counting(context_.media), hit.t - from);
-        if (largest(share) < LEAST_WEIGHT) return glm::dvec3(0);
+        if (largest(share) < LEAST_WEIGHT) return Vec3(0);
         from = meeting.beyond;
         skip = meeting.last;
         media = std::move(meeting.behind);
     }
-    return glm::dvec3(0);
+    return Vec3(0);
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

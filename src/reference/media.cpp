@@ -5,7 +5,7 @@
 
 #include "path/shading_numbers.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 uint32_t Media::depth(uint32_t material) const {
     return uint32_t(std::count(entered_.begin(), entered_.end(), material));
@@ -30,31 +30,13 @@ bool MediaWalk::bounds_medium(uint32_t triangle) const {
 /// The walls that are one with the nearest, which comes first: as long as the ray meets parallel walls of media next. A
 /// body's wall counts once, also where two of its triangles meet; a body that the ray enters here it does not leave.
 /// What is opaque hides walls that coincide with it.
-MediaWalk::Together MediaWalk::walls_at(const OracleRay& ray, const Wall& nearest, const Media& media,
-                                        bool to_light) const {
+MediaWalk::Together MediaWalk::walls_at(const Ray& ray, const Wall& nearest, const Media& media, bool to_light) const {
     Together together{{nearest}, {}};
     std::vector<Wall>& walls = together.walls;
-    const double slope = std::max(std::abs(glm::dot(nearest.surface.geometric, ray.direction)), LEAST_COSINE);
-    const double reach = WALLS_APART * nearest.surface.extent / slope;
-    const OracleRay near{ray.origin, std::max(ray.tmin, nearest.hit.t - reach), ray.direction, nearest.hit.t + reach};
-    std::vector<OracleHit> hits;
-    const auto prepared = PreparedRay::make(near, bvh_.triangles);
-    if (!prepared) return together;
-    for (const uint32_t index : bvh_.along(near)) {
-        OracleHit hit;
-        const uint32_t triangle = bvh_.triangles.ids[index];
-        if (triangle == nearest.hit.triangle || !prepared->intersect(bvh_.triangles.corners[index], hit)) continue;
-        hit.triangle = triangle;
-        const bool shown = !bvh_.sides.is_single(triangle) ||
-                           comes_from_front(bvh_.triangles.corners[index], ray.direction) != to_light;
-        if (shown && bvh_.alpha.is_present(triangle, hit.u, hit.v)) hits.push_back(hit);
-    }
-    std::sort(hits.begin(), hits.end(),
-              [](const OracleHit& a, const OracleHit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    hits.erase(std::unique(hits.begin(), hits.end(),
-                           [](const OracleHit& a, const OracleHit& b) { return a.triangle == b.triangle; }),
-               hits.end());
-    for (const OracleHit& hit : hits) {
+    const real slope = std::max(std::abs(glm::dot(nearest.surface.geometric, ray.direction)), LEAST_COSINE);
+    const real reach = WALLS_APART * nearest.surface.extent / slope + nearest.hit.t * distance_rounding;
+    const Ray near{ray.origin, std::max(ray.tmin, nearest.hit.t - reach), ray.direction, nearest.hit.t + reach};
+    for (const Hit& hit : triangles_.along(near, nearest.hit.triangle, to_light)) {
         if (walls.size() == WALLS_TOGETHER) break;
         const Wall wall{hit, surfaces_.at(hit.triangle, hit.u, hit.v, ray.direction)};
         const uint32_t material = wall.surface.material;
@@ -96,7 +78,7 @@ size_t MediaWalk::meet(const std::vector<Wall>& walls, Meeting& meeting) const {
         owner = i;
         least = rank;
     }
-    meeting.beside = glm::dvec3(1);
+    meeting.beside = Vec3(1);
     for (size_t i = 0; i < walls.size(); i++) {
         const uint32_t material = walls[i].surface.material;
         // The wall of a body within another one of the same medium has no colour.
@@ -107,11 +89,11 @@ size_t MediaWalk::meet(const std::vector<Wall>& walls, Meeting& meeting) const {
     return owner;
 }
 
-Meeting MediaWalk::next(OracleRay ray, uint32_t skip, const Media& media, bool to_light) const {
+Meeting MediaWalk::next(Ray ray, uint32_t skip, const Media& media, bool to_light) const {
     Meeting meeting;
     meeting.before = media;
     for (int i = 0;; i++) {
-        meeting.hit = bvh_.nearest(ray, skip, to_light).hit;
+        meeting.hit = triangles_.nearest(ray, skip, to_light);
         meeting.wall = meeting.hit.hit() && bounds_medium(meeting.hit.triangle);
         meeting.beyond = meeting.hit.t;
         meeting.last = meeting.hit.triangle;
@@ -119,7 +101,7 @@ Meeting MediaWalk::next(OracleRay ray, uint32_t skip, const Media& media, bool t
             meeting.behind = meeting.before;
             return meeting;
         }
-        const OracleHit& hit = meeting.hit;
+        const Hit& hit = meeting.hit;
         const Wall nearest{hit, surfaces_.at(hit.triangle, hit.u, hit.v, ray.direction)};
         const auto [walls, opaque] = walls_at(ray, nearest, meeting.before, to_light);
         if (opaque) {
@@ -147,4 +129,4 @@ Meeting MediaWalk::next(OracleRay ray, uint32_t skip, const Media& media, bool t
     }
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

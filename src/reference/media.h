@@ -6,11 +6,11 @@
 #include <set>
 #include <vector>
 
-#include "reference/bvh.h"
+#include "reference/intersections.h"
 #include "reference/surface.h"
 #include "scene/media.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 /// Materials whose volumes a path has entered and not left, each as often as it has.
 class Media {
@@ -33,43 +33,43 @@ class Media {
 
 /// What a ray meets.
 struct Meeting {
-    OracleHit hit;      ///< a miss: nothing
+    Hit hit;            ///< a miss: nothing
     bool wall = false;  ///< of a medium; if not, only `hit`, `before`, `behind`, `passed` and `beyond` have a meaning
     Media before, behind;
     uint32_t from = Media::air, to = Media::air;  ///< the media that count on either side
-    glm::dvec3 passed{1};                         ///< tint of walls on the way at which nothing changed
-    glm::dvec3 beside{1};                         ///< tint of the other walls at the same place
-    double lift = 0;                              ///< how far from the wall rays start at least
-    double beyond = 0;                            ///< where a ray that goes straight on has passed it
+    Vec3 passed{1};                               ///< tint of walls on the way at which nothing changed
+    Vec3 beside{1};                               ///< tint of the other walls at the same place
+    real lift = 0;                                ///< how far from the wall rays start at least
+    real beyond = 0;                              ///< where a ray that goes straight on has passed it
     uint32_t last = ~0u;                          ///< the triangle that it passes last
 };
 
 /// Finds what rays meet; all that it is made of must outlive it.
 class MediaWalk {
   public:
-    MediaWalk(const Bvh& bvh, const Surfaces& surfaces, const MediaRanks& ranks)
-        : bvh_(bvh), surfaces_(surfaces), ranks_(ranks) {}
+    MediaWalk(const Intersections& triangles, const Surfaces& surfaces, const MediaRanks& ranks)
+        : triangles_(triangles), surfaces_(surfaces), ranks_(ranks) {}
 
-    /// `skip`: a triangle that does not count; `to_light`: see Bvh::nearest().
-    Meeting next(OracleRay ray, uint32_t skip, const Media& media, bool to_light = false) const;
+    /// `skip`: a triangle that does not count; `to_light`: see Intersections::nearest().
+    Meeting next(Ray ray, uint32_t skip, const Media& media, bool to_light = false) const;
 
   private:
     struct Wall {
-        OracleHit hit;
+        Hit hit;
         Surface surface;
     };
     bool bounds_medium(uint32_t triangle) const;
     /// What is in one place.
     struct Together {
         std::vector<Wall> walls;
-        std::optional<OracleHit> opaque;
+        std::optional<Hit> opaque;
     };
-    Together walls_at(const OracleRay& ray, const Wall& nearest, const Media& media, bool to_light) const;
+    Together walls_at(const Ray& ray, const Wall& nearest, const Media& media, bool to_light) const;
     size_t meet(const std::vector<Wall>& walls, Meeting& meeting) const;
 
-    const Bvh& bvh_;
+    const Intersections& triangles_;
     const Surfaces& surfaces_;
     const MediaRanks& ranks_;
 };
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

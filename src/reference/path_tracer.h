@@ -1,4 +1,4 @@
-// Ground truth: the frame of docs/frame.md on the CPU, in double precision.
+// The frame of docs/frame.md on the CPU: in double precision, where it is ground truth, or in single, where it is fast.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,18 @@
 
 namespace peelray {
 
+/// `double_`: hits are the oracle's (Embree 3 finds candidates, double precision decides), and all shading is in double
+/// precision. `single_`: hits are Embree's own, and all is in single precision.
+enum class Precision { double_, single_ };
+
 /// Renders what the GPU renders, by the same rules from the same samples, on all cores: the same camera rays, branches,
-/// random numbers, lights and materials. Hits are the oracle's (Embree 3 finds candidates, double precision decides);
-/// all shading is in double precision. So a picture differs from the GPU's where intersections do, and by rounding.
+/// random numbers, lights and materials. So a picture differs from the GPU's where intersections do, and by rounding.
 class PathTracer {
   public:
     /// `scene`, `geometry` and `environment` must outlive it. `emitters`: that are looked for as lamps are, by
     /// Emitter::id. Throws Error if Embree runs out of memory.
     PathTracer(const Scene& scene, const Moment& moment, const Geometry& geometry, const Environment& environment,
-               std::span<const Emitter> emitters = {});
+               std::span<const Emitter> emitters = {}, Precision precision = Precision::double_);
     ~PathTracer();
 
     /// `threads`: 0 for all cores. The picture does not depend on it. Progress receives the share done from the calling
@@ -32,8 +35,9 @@ class PathTracer {
     /// "Embree 3.13.5"
     static std::string version();
 
-  private:
     struct Impl;
+
+  private:
     std::unique_ptr<Impl> impl_;
 };
 

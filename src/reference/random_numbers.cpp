@@ -4,7 +4,7 @@
 
 #include "path/shading_numbers.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 namespace {
 
 /// x in the even bits, y in the odd ones.
@@ -70,13 +70,13 @@ uint32_t PixelSample::bits_for(uint32_t spp) {
     return uint32_t(std::bit_width(spp - 1));
 }
 
-glm::dvec2 random_pair(uint32_t seed, uint32_t level, uint32_t purpose, const PixelSample& sample) {
+Vec2 random_pair(uint32_t seed, uint32_t level, uint32_t purpose, const PixelSample& sample) {
     const uint32_t branch = seed & ((1u << RANDOM_BRANCH_BITS) - 1);
     const glm::uvec3 key = hash3({branch | level << RANDOM_BRANCH_BITS, purpose, sample.picture});
     const uint32_t index = (seed >> RANDOM_BRANCH_BITS) << sample.bits | sample.number;
     const uint32_t shuffled = scrambled(index, key.x);
     const uint32_t x = scrambled(reversed(shuffled), key.y), y = scrambled(sobol(shuffled), key.z);
-    return glm::dvec2(x >> 8, y >> 8) / 16777216.0;
+    return Vec2(x >> 8, y >> 8) / 16777216.0;
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

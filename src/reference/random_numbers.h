@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace peelray {
+#include "reference/real.h"
+
+namespace peelray::inline PRECISION {
 
 /// pcg3d (Jarzynski, Olano, JCGT 2020).
 glm::uvec3 hash3(glm::uvec3 v);
@@ -25,6 +27,6 @@ struct PixelSample {
 };
 
 /// What a path of this seed and level draws for a purpose (RANDOM_*), [0, 1)².
-glm::dvec2 random_pair(uint32_t seed, uint32_t level, uint32_t purpose, const PixelSample& sample);
+Vec2 random_pair(uint32_t seed, uint32_t level, uint32_t purpose, const PixelSample& sample);
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

@@ -3,28 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/infinity.h"
 #include "reference/optics.h"
 
-namespace peelray {
+namespace peelray::inline PRECISION {
 
 using namespace optics;
 
 Meeting Shader::hit(const Path& path) const {
-    return walk().next({path.origin, 0, path.direction, infinity}, path.skip, path.media);
+    return walk().next({path.origin, 0, path.direction, endless}, path.skip, path.media);
 }
 
-glm::dvec3 Shader::transmittance(uint32_t medium, double distance) const {
-    return medium == Media::air ? glm::dvec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
+Vec3 Shader::transmittance(uint32_t medium, real distance) const {
+    return medium == Media::air ? Vec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
 }
 
-glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
-    const OracleHit& hit = meeting.hit;
+Vec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
+    const Hit& hit = meeting.hit;
     if (!hit.hit()) return meeting.passed * missed(arriving, arriving.weight * meeting.passed);
-    const double width = arriving.cone.width_at(hit.t);
+    const real width = arriving.cone.width_at(hit.t);
     Surface surface = context_.surfaces.at(hit.triangle, hit.u, hit.v, arriving.direction, width);
     surface.error = std::max(surface.error, meeting.lift);
-    const glm::dvec3 kept = meeting.passed * transmittance(meeting.before.counting(context_.media), hit.t);
+    const Vec3 kept = meeting.passed * transmittance(meeting.before.counting(context_.media), hit.t);
     Path path = arriving;
     path.weight *= kept;
     path.media = meeting.before;
@@ -32,10 +31,10 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     path.length += hit.t;
     const Scattered scattered = scatter(surface, path, meeting);
     if (surface.optics.catcher) return kept * caught(surface, path, meeting, scattered.reflection);
-    glm::dvec3 sum = scattered.radiance;
+    Vec3 sum = scattered.radiance;
     if (path.level == 0 && surface.optics.unlit) {
         const Branch& on = scattered.refraction;
-        unlit_ = kept * (sum + (on.traced ? glm::dvec3(0) : untraced(on, path)));
+        unlit_ = kept * (sum + (on.traced ? Vec3(0) : untraced(on, path)));
     }
     const std::optional<uint32_t> guiding = guiding_branch(surface, path, scattered);
     // The reference goes on in all of them; the GPU's rays do not.
@@ -45,7 +44,7 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     sum += follow(scattered.reflection, surface, path, hit.triangle, 0, guiding == 0u);
     const Branch& whole = scattered.refraction;
     (whole.mirrors ? rays_.cut_reflection : rays_.cut_refraction) += is_cut(whole, path);
-    glm::dvec3 beside(0);
+    Vec3 beside(0);
     const auto second = [&](const Branch& branch) {
         if (branch.traced) (branch.mirrors ? rays_.reflection : rays_.refraction)++;
         beside += follow(branch, surface, path, hit.triangle, 1, guiding == 1u);
@@ -53,38 +52,38 @@ glm::dvec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
     if (scattered.split.empty()) second(whole);
     for (const Branch& channel : scattered.split) second(channel);
     sum += beside;
-    const glm::dvec3 lit = surface.optics.unlit ? glm::dvec3(0) : scattered_light(surface, path, meeting);
+    const Vec3 lit = surface.optics.unlit ? Vec3(0) : scattered_light(surface, path, meeting);
     sum += lit;
     if (path.guided && !guiding) guide(surface, path, sum, beside, lit);
     return kept * sum;
 }
 
 /// Light from lamps and from what else is not mirrored.
-glm::dvec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& meeting) {
+Vec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& meeting) {
     const Seen seen = this->seen(s, path);
     const bool volume = meeting.wall && s.optics.transmits() && !s.optics.thin;
     const Lit at{s, meeting.hit.triangle, path, seen, volume ? meeting.behind : path.media};
     const Branch diffuse = diffuse_branch(at);
-    const glm::dvec3 direct = s.optics.alpha * direct_light(at, !diffuse.traced);
+    const Vec3 direct = s.optics.alpha * direct_light(at, !diffuse.traced);
     if (!diffuse.traced) return direct;
     rays_.diffuse++;
     return direct + follow(diffuse, s, path, at.triangle, 2);
 }
 
 /// A branch that no ray follows sees the environment or, straight from the camera, what is to be seen instead.
-glm::dvec3 Shader::untraced(const Branch& branch, const Path& path) const {
+Vec3 Shader::untraced(const Branch& branch, const Path& path) const {
     if (branch.passes && path.is_straight() && context_.settings.backdrop.kind != Backdrop::Kind::environment)
         return branch.weight * backdrop(branch.direction);
-    const double blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
+    const real blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
     return branch.weight * environment_share(branch.direction, branch.density) *
            context_.surroundings.radiance(branch.direction, blur);
 }
 
 /// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
 /// part of, 2 the diffuse one.
-glm::dvec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
-                          uint32_t which, bool guided) {
-    if (branch.weight == glm::dvec3(0)) return glm::dvec3(0);
+Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle, uint32_t which,
+                    bool guided) {
+    if (branch.weight == Vec3(0)) return Vec3(0);
     if (!branch.traced) {
         if (branch.passes && path.is_straight()) through_ += luminance(path.weight * branch.weight);
         return untraced(branch, path);
@@ -116,11 +115,11 @@ Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, con
 
 /// What a surface shows that holds nothing but shadows and mirror images: of what is behind it the share of its light
 /// that arrives, less what mirror images cover, and these.
-glm::dvec3 Shader::caught(const Surface& s, const Path& path, const Meeting& meeting, const Branch& reflection) {
+Vec3 Shader::caught(const Surface& s, const Path& path, const Meeting& meeting, const Branch& reflection) {
     if (path.level == 0) catches_ = true;
     const uint32_t triangle = meeting.hit.triangle;
     const Seen at_point = this->seen(s, path);
-    glm::dvec3 left = left_by_shadows({s, triangle, path, at_point, path.media}), mirrored(0);
+    Vec3 left = left_by_shadows({s, triangle, path, at_point, path.media}), mirrored(0);
     rays_.cut_reflection += is_cut(reflection, path);
     if (reflection.traced) {
         rays_.reflection++;
@@ -135,13 +134,13 @@ glm::dvec3 Shader::caught(const Surface& s, const Path& path, const Meeting& mee
 }
 
 /// What the camera sees where nothing is before it.
-glm::dvec3 Shader::backdrop(const glm::dvec3& direction) const {
+Vec3 Shader::backdrop(const Vec3& direction) const {
     const Backdrop& seen = context_.settings.backdrop;
-    return seen.kind == Backdrop::Kind::blurred ? context_.surroundings.blurred(direction) : glm::dvec3(seen.color);
+    return seen.kind == Backdrop::Kind::blurred ? context_.surroundings.blurred(direction) : Vec3(seen.color);
 }
 
 /// What a ray that hits nothing sees; `weight`: of the pixel's light.
-glm::dvec3 Shader::missed(const Path& path, const glm::dvec3& weight) {
+Vec3 Shader::missed(const Path& path, const Vec3& weight) {
     const bool straight = path.is_straight();
     if (straight) through_ += luminance(weight);
     if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
@@ -174,4 +173,4 @@ bool Shader::is_cut(const Branch& branch, const Path& path) const {
     return context_.settings.bounces > 0 && path.level > 0 && is_wanted(branch, path) && is_last(path, branch.passes);
 }
 
-}  // namespace peelray
+}  // namespace peelray::inline PRECISION

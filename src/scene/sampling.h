@@ -1,4 +1,4 @@
-// Texture lookups in double precision, by the rules of shaders/common/textures.glsl.
+// Texture lookups in double or single precision (T), by the rules of shaders/common/textures.glsl.
 #pragma once
 
 #include <cmath>
@@ -8,18 +8,20 @@
 namespace peelray {
 
 /// Bilinear between the four values around `p` (values lie at half-integers); `fetch`: the value at column x, row y.
-template <typename Fetch>
-auto bilinear(const glm::dvec2& p, Fetch fetch) {
-    const glm::dvec2 q = p - 0.5, f = q - glm::floor(q);
+template <typename T, typename Fetch>
+auto bilinear(const glm::vec<2, T>& p, Fetch fetch) {
+    const glm::vec<2, T> q = p - T(0.5), f = q - glm::floor(q);
     const int x = int(std::floor(q.x)), y = int(std::floor(q.y));
     return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
                     f.y);
 }
 
 /// Linear colour of one level; `nearest`: of the nearest texel, else bilinear.
-glm::dvec3 sample_color(const Texture& texture, const glm::dvec2& uv, bool nearest);
+template <typename T>
+glm::vec<3, T> sample_color(const Texture& texture, const glm::vec<2, T>& uv, bool nearest);
 /// The same of all channels as they are stored, [0, 1].
-glm::dvec4 sample_data(const Texture& texture, const glm::dvec2& uv, bool nearest);
+template <typename T>
+glm::vec<4, T> sample_data(const Texture& texture, const glm::vec<2, T>& uv, bool nearest);
 /// Alpha, magnified as the texture says.
 double sample_alpha(const Texture& texture, const glm::dvec2& uv);
 

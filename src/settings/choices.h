@@ -21,6 +21,7 @@ struct Named {
 /// Who answers for what a surface mirrors, lets through and has in its way to the light.
 enum class Tracer : uint8_t {
     ldc,        ///< rays in the layered depth cube
+    cpu,        ///< all rays on the CPU, in single precision
     reference,  ///< all rays on the CPU, in double precision
     cubemap,    ///< the baseline: cube maps of each object's surroundings and shadow maps
     khr,        ///< the rival: rays by the device's own ray tracing
@@ -28,10 +29,15 @@ enum class Tracer : uint8_t {
 };
 constexpr auto names_of(Tracer) {
     return std::to_array<Named<Tracer>>({{Tracer::ldc, "ldc"},
+                                         {Tracer::cpu, "cpu"},
                                          {Tracer::reference, "reference"},
                                          {Tracer::cubemap, "cubemap"},
                                          {Tracer::khr, "khr"},
                                          {Tracer::none, "none"}});
+}
+/// Does it need no Vulkan device?
+constexpr bool is_on_cpu(Tracer tracer) {
+    return tracer == Tracer::cpu || tracer == Tracer::reference;
 }
 
 /// What a ray takes for a hit.

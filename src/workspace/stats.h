@@ -28,10 +28,10 @@ struct PictureStats {
     glm::dvec3 origin{0};    ///< Scene::origin
     SamplesMade samples;
     RayCounts rays;
-    RenderStats render;           ///< of Tracer::reference only times and passes
+    RenderStats render;           ///< where is_on_cpu() only times and passes
     RayCosts largest_of_a_pixel;  ///< where costs were counted
 
-    bool by_reference() const { return render.tracer == Tracer::reference; }
+    bool by_cpu() const { return is_on_cpu(render.tracer); }
     /// Were rays traced in layered depth cubes?
     bool has_cubes() const { return render.cubes.bodies > 0; }
 };

@@ -7,8 +7,8 @@
 #include "motion/animation.h"
 #include "render/gpu_scene.h"
 #include "scene/sidedness.h"
+#include "workspace/cpu_pictures.h"
 #include "workspace/culled_view.h"
-#include "workspace/reference.h"
 #include "workspace/render_settings.h"
 
 namespace peelray {
@@ -39,12 +39,12 @@ Device& Workspace::device() {
 }
 
 std::string Workspace::renderer_name(Tracer tracer) {
-    return tracer == Tracer::reference ? reference_version() : device().info().name;
+    return is_on_cpu(tracer) ? cpu_version(tracer) : device().info().name;
 }
 
 void Workspace::check(Tracer tracer) {
     if (tracer == Tracer::cubemap && settings_.shadow_catcher)
-        fail("{} cubemap has no {}: use {} ldc, khr or reference", setting::tracer, setting::shadow_catcher,
+        fail("{} cubemap has no {}: use {} ldc, khr, cpu or reference", setting::tracer, setting::shadow_catcher,
              setting::tracer);
     if (tracer == Tracer::khr) device().check_ray_tracing();
 }
@@ -82,12 +82,12 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
     const std::string clean = clean_note(settings);
     if (!clean.empty() && !std::exchange(noted_.denoise, true)) note(notes_, clean);
-    MadePicture made = settings.tracer == Tracer::reference ? reference_picture(scene_, settings, interrupts)
-                                                            : render_on_device(settings, interrupts);
+    MadePicture made =
+        is_on_cpu(settings.tracer) ? cpu_picture(scene_, settings, interrupts) : render_on_device(settings, interrupts);
     note_uncaught(settings);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
-    const std::string crowded = settings.tracer == Tracer::reference ? "" : crowded_note(made.stats.rays);
+    const std::string crowded = is_on_cpu(settings.tracer) ? "" : crowded_note(made.stats.rays);
     if (!crowded.empty() && !std::exchange(noted_.crowded, true)) note(notes_, crowded);
     note_culled(settings, made.picture);
     return in_world(std::move(made));
@@ -97,7 +97,7 @@ std::optional<PosedScene::Glimpse> Workspace::look_back(RenderSettings& settings
     std::optional<PosedScene::Glimpse> before;
     if (!settings.aovs || !settings.motion) return before;
     if (scene_.time() && shot.fps > 0)
-        before = scene_.glimpse(moment_before(*scene_.time(), shot.fps), settings.tracer == Tracer::reference);
+        before = scene_.glimpse(moment_before(*scene_.time(), shot.fps), is_on_cpu(settings.tracer));
     settings.camera_before = turned(before ? before->camera : scene_.camera(), shot.turn_before);
     return before;
 }

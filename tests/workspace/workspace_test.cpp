@@ -29,7 +29,7 @@ TEST(Workspace, AFewLinesMakeAPicture) {
     EXPECT_EQ(made.stats.triangles, workspace.scene().triangles());
     EXPECT_GT(made.stats.rays.secondary(), 0u);
     EXPECT_TRUE(made.stats.has_cubes());
-    EXPECT_FALSE(made.stats.by_reference());
+    EXPECT_FALSE(made.stats.by_cpu());
     EXPECT_FALSE(made.stats.machine.api_version.empty());
 }
 
@@ -57,7 +57,7 @@ TEST(Workspace, TracersOneAfterTheOther) {
     Workspace workspace(small("builtin:teapots"));
     const MadePicture ldc = workspace.render();
     const MadePicture reference = Workspace(small("builtin:teapots", Tracer::reference)).render();
-    EXPECT_TRUE(reference.stats.by_reference());
+    EXPECT_TRUE(reference.stats.by_cpu());
     EXPECT_EQ(reference.stats.machine.kind, "cpu");
     ASSERT_EQ(reference.stats.render.passes.size(), 2u);
     EXPECT_EQ(reference.stats.rays.primary, ldc.stats.rays.primary);

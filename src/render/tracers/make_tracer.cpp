@@ -10,6 +10,7 @@ std::unique_ptr<RayTracer> make_tracer(const TracerChoice& choice, const TracedW
             return std::make_unique<LdcTracer>(world, choice);
         case Tracer::khr:
             return std::make_unique<KhrTracer>(world, choice);
+        case Tracer::cpu:
         case Tracer::reference:
         case Tracer::cubemap:
         case Tracer::none:

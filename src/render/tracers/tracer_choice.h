@@ -8,7 +8,7 @@
 namespace peelray {
 
 struct TracerChoice {
-    Tracer tracer = Tracer::ldc;  ///< not `reference`, which needs no device
+    Tracer tracer = Tracer::ldc;  ///< none that is_on_cpu()
     CubeChoice cubes;
     bool rebuild = false;  ///< for measuring: all cubes or structures anew in every frame, as if everything changed
     /// Of `khr`: what becomes of the structure of a body that changes its shape, or, with `rebuild`, of every one.

@@ -1,4 +1,4 @@
-#include "workspace/reference.h"
+#include "workspace/cpu_pictures.h"
 
 #include "base/error.h"
 
@@ -21,12 +21,13 @@ static Emitters emitters_in(const PosedScene& posed, const PictureSettings& sett
                : Emitters{};
 }
 
-MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings, const PictureWatch& watch) {
+MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch) {
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
     const Geometry& geometry = scene.geometry();
-    const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment(), emitters_in(scene, settings));
+    const PathTracer tracer(scene.scene(), scene.moment(), geometry, scene.environment(), emitters_in(scene, settings),
+                            settings.tracer == Tracer::cpu ? Precision::single_ : Precision::double_);
     const auto built = Clock::now();
     MadePicture made;
     made.picture = tracer.render(settings, watch);
@@ -35,7 +36,7 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     const std::string threads = counted("{} CPU thread{|s}", std::max(1u, std::thread::hardware_concurrency()));
     made.stats = picture_stats({threads, "cpu", PathTracer::version(), ""}, scene, made.picture);
     RenderStats& times = made.stats.render;
-    times.tracer = Tracer::reference;
+    times.tracer = settings.tracer;
     times.timed = true;
     times.build_ms = ms(built - start);
     times.frame_ms = ms(done - built);
@@ -43,24 +44,25 @@ MadePicture reference_picture(PosedScene& scene, const PictureSettings& settings
     return made;
 }
 
-std::string reference_version() {
-    return "reference, " + PathTracer::version();
+std::string cpu_version(Tracer tracer) {
+    return fmt::format("{}, {}", name_of(tracer), PathTracer::version());
 }
 
 }  // namespace peelray
 #else
 namespace peelray {
 
-[[noreturn]] static void fail_without_reference() {
-    fail("this program was built without the reference (PEELRAY_REFERENCE=OFF): use {} ldc", setting::tracer);
+[[noreturn]] static void fail_without(Tracer tracer) {
+    fail("this program was built without its CPU side (PEELRAY_REFERENCE=OFF), so without {} {}: use {} ldc",
+         setting::tracer, name_of(tracer), setting::tracer);
 }
 
-MadePicture reference_picture(PosedScene&, const PictureSettings&, const PictureWatch&) {
-    fail_without_reference();
+MadePicture cpu_picture(PosedScene&, const RenderSettings& settings, const PictureWatch&) {
+    fail_without(settings.tracer);
 }
 
-std::string reference_version() {
-    fail_without_reference();
+std::string cpu_version(Tracer tracer) {
+    fail_without(tracer);
 }
 
 }  // namespace peelray

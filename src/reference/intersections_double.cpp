@@ -1,0 +1,62 @@
+// The reference's hits: the oracle's.
+#include <algorithm>
+
+#include "reference/bvh.h"
+#include "reference/intersections.h"
+
+#ifdef PEELRAY_SINGLE
+#error "of the double-precision tracer alone"
+#endif
+
+namespace peelray::inline PRECISION {
+
+struct Intersections::Impl : Bvh {
+    Impl(const Scene& scene, const Geometry& geometry)
+        : Bvh(geometry, AlphaTest(scene, geometry), Sidedness(scene, geometry)) {}
+};
+
+Intersections::Intersections(const Scene& scene, const Geometry& geometry)
+    : impl_(std::make_unique<Impl>(scene, geometry)) {}
+
+Intersections::~Intersections() = default;
+
+Hit Intersections::nearest(const Ray& ray, uint32_t skip, bool to_light) const {
+    return impl_->nearest(ray, skip, to_light).hit;
+}
+
+std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_light) const {
+    std::vector<Hit> hits;
+    const TriangleSet& set = impl_->triangles;
+    const auto prepared = PreparedRay::make(ray, set);
+    if (!prepared) return hits;
+    for (const uint32_t index : impl_->along(ray)) {
+        Hit hit;
+        hit.triangle = set.ids[index];
+        if (hit.triangle == skip || !prepared->intersect(set.corners[index], hit)) continue;
+        const bool shown = !is_single(hit.triangle) || comes_from_front(set.corners[index], ray.direction) != to_light;
+        if (shown && is_present(hit.triangle, hit.u, hit.v)) hits.push_back(hit);
+    }
+    std::ranges::sort(hits, {}, [](const Hit& hit) { return std::pair(hit.t, hit.triangle); });
+    const auto repeated = std::ranges::unique(hits, {}, &Hit::triangle);
+    hits.erase(repeated.begin(), repeated.end());
+    return hits;
+}
+
+/// The reference looks at each surface.
+bool Intersections::is_blocked(const Ray&, uint32_t) const {
+    return false;
+}
+
+bool Intersections::all_opaque() const {
+    return false;
+}
+
+bool Intersections::is_present(uint32_t triangle, real u, real v) const {
+    return impl_->alpha.is_present(triangle, u, v);
+}
+
+bool Intersections::is_single(uint32_t triangle) const {
+    return impl_->sides.is_single(triangle);
+}
+
+}  // namespace peelray::inline PRECISION
