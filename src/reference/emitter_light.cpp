@@ -26,6 +26,7 @@ real Shader::emission_share(const Path& path, const Hit& hit) const {
 
 /// From one point of one triangle.
 Vec3 Shader::emitter_light(const Lit& at) {
+    if (!scatters(at.surface.optics) && !mirrors_drawn(at.surface.optics)) return Vec3(0);
     const Emitter& emitter = context_.emitters.choose(random(at.path, RANDOM_EMITTER).x);
     if (emitter.id == at.triangle) return Vec3(0);
     const Vec2 r = random(at.path, RANDOM_EMITTER_POINT);

@@ -73,6 +73,11 @@ Vec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool
            coat_reflectance(m, v_h) * density * coat.masking(drawn.direction) / (drawn.density + traced * density);
 }
 
+/// Is there a lobe that mirrors light from directions that are drawn? A mirror has one direction.
+bool Shader::mirrors_drawn(const Optics& m) {
+    return m.lobe_roughness() >= MIRROR_ROUGHNESS || (m.clearcoat > 0 && m.coat_roughness >= MIRROR_ROUGHNESS);
+}
+
 bool Shader::scatters(const Optics& m) {
     return (m.metallic < 1 && m.transmission < 1) || largest(m.sheen) > 0;
 }
@@ -99,6 +104,7 @@ real Shader::scattered_density(const Lit& at, const Vec3& direction) {
 /// light at all.
 Vec3 Shader::environment_light(const Lit& at) {
     const bool scattering = scatters(at.surface.optics);
+    if (!scattering && !mirrors_drawn(at.surface.optics)) return Vec3(0);
     const real by_brightness = scattering ? 0.5 : 1;
     Vec2 u = random(at.path, RANDOM_ENVIRONMENT);
     const bool bright = u.x < by_brightness;

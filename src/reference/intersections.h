@@ -39,10 +39,13 @@ class Intersections {
     Hit nearest(const Ray& ray, uint32_t skip, bool to_light = false) const;
     /// All, by t and number, each triangle once.
     std::vector<Hit> along(const Ray& ray, uint32_t skip, bool to_light) const;
-    /// Does something in the ray's way let no light through for certain? If not, it is to be looked at by nearest().
-    bool is_blocked(const Ray& ray, uint32_t skip) const;
-    /// Does nothing in the scene let light through? Then a ray that is not blocked is free.
-    bool all_opaque() const;
+    /// What is in the way of a ray that goes from a surface to a light.
+    enum class Way {
+        free,
+        blocked,  ///< by something that lets no light through
+        unsure,   ///< something may let light through: nearest() knows what there is
+    };
+    Way way(const Ray& ray, uint32_t skip) const;
 
     /// Is there a surface at a point of a triangle?
     bool is_present(uint32_t triangle, real u, real v) const;

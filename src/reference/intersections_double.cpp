@@ -43,12 +43,8 @@ std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_lig
 }
 
 /// The reference looks at each surface.
-bool Intersections::is_blocked(const Ray&, uint32_t) const {
-    return false;
-}
-
-bool Intersections::all_opaque() const {
-    return false;
+Intersections::Way Intersections::way(const Ray&, uint32_t) const {
+    return Way::unsure;
 }
 
 bool Intersections::is_present(uint32_t triangle, real u, real v) const {

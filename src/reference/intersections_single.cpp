@@ -13,7 +13,6 @@
 #endif
 
 namespace peelray::inline PRECISION {
-namespace {
 
 /// What decides about a hit, by triangle: most have nothing that does.
 enum Trait : uint8_t {
@@ -22,14 +21,16 @@ enum Trait : uint8_t {
     see_through = 4,  ///< light may come through
 };
 
-struct Triangles {
+struct TriangleTraits {
     AlphaTest alpha;
     std::vector<uint8_t> traits;
 };
 
+namespace {
+
 /// A ray on its way through Embree, which hands it back to the filters.
 struct Query : RTCIntersectContext {
-    const Triangles& triangles;
+    const TriangleTraits& triangles;
     uint32_t skip;
     bool to_light;
     float tmin;
@@ -37,8 +38,9 @@ struct Query : RTCIntersectContext {
     float nearest = endless;
     uint32_t triangle = ~0u;
     std::vector<Hit>* all = nullptr;
+    bool through = false;  ///< something that may let light through is in the way
 
-    Query(const Triangles& triangles, const Ray& ray, uint32_t skip, bool to_light)
+    Query(const TriangleTraits& triangles, const Ray& ray, uint32_t skip, bool to_light)
         : RTCIntersectContext(), triangles(triangles), skip(skip), to_light(to_light), tmin(ray.tmin) {
         rtcInitIntersectContext(this);
     }
@@ -87,8 +89,9 @@ void filter_nearest(const RTCFilterFunctionNArguments* args) {
 /// What light may come through does not block for certain.
 void filter_blocking(const RTCFilterFunctionNArguments* args) {
     const Candidate candidate = candidate_of(args);
-    const bool opaque = !(candidate.query.triangles.traits[candidate.hit.primID] & see_through);
-    if (!opaque || !candidate.counts()) args->valid[0] = 0;
+    const bool through = candidate.query.triangles.traits[candidate.hit.primID] & see_through;
+    if (through) candidate.query.through |= candidate.hit.primID != candidate.query.skip;
+    if (through || !candidate.counts()) args->valid[0] = 0;
 }
 
 RTCRay embree_ray(const Ray& ray) {
@@ -108,10 +111,9 @@ RTCRay embree_ray(const Ray& ray) {
 
 }  // namespace
 
-struct Intersections::Impl : Triangles {
+struct Intersections::Impl : TriangleTraits {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    bool all_opaque = true;
 
     Impl(const Scene& described, const Geometry& geometry);
     ~Impl() {
@@ -135,7 +137,6 @@ Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
         const bool through = lets_through(described.materials[geometry.materials[i]]);
         traits[i] = uint8_t((alpha.is_masked(i) ? holes : 0) | (sides.is_single(i) ? one_side : 0) |
                             (through ? see_through : 0));
-        all_opaque &= !through;
     }
     if (count == 0) return;  // every ray misses
     device = rtcNewDevice(nullptr);
@@ -144,6 +145,10 @@ Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Triangles of corners that are not there or not finite are hit by none.
+    std::vector<glm::uvec3> corners = geometry.triangles;
+    for (glm::uvec3& t : corners)
+        if (std::max({t.x, t.y, t.z}) >= geometry.positions.size()) t = glm::uvec3(0);
     // Copied: Embree reads 16 bytes of the last one of shared buffers.
     const auto copy = [&](RTCBufferType type, RTCFormat format, const auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
@@ -151,7 +156,7 @@ Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
         if (to) std::ranges::copy(values, static_cast<Value*>(to));
     };
     copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, geometry.positions);
-    copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, geometry.triangles);
+    copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, corners);
     rtcSetGeometryIntersectFilterFunction(mesh, filter_nearest);
     rtcSetGeometryOccludedFilterFunction(mesh, filter_blocking);
     rtcCommitGeometry(mesh);
@@ -189,20 +194,16 @@ std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_lig
     return hits;
 }
 
-bool Intersections::is_blocked(const Ray& ray, uint32_t skip) const {
-    if (!impl_->scene || !(ray.tmin < ray.tmax)) return false;
+Intersections::Way Intersections::way(const Ray& ray, uint32_t skip) const {
+    if (!impl_->scene || !(ray.tmin < ray.tmax)) return Way::free;
     Query query(*impl_, ray, skip, true);
     RTCRay traced = embree_ray(ray);
     rtcOccluded1(impl_->scene, &query, &traced);
-    return traced.tfar < 0;
-}
-
-bool Intersections::all_opaque() const {
-    return impl_->all_opaque;
+    return traced.tfar < 0 ? Way::blocked : query.through ? Way::unsure : Way::free;
 }
 
 bool Intersections::is_present(uint32_t triangle, real u, real v) const {
-    return impl_->alpha.is_present(triangle, u, v);
+    return !(impl_->traits[triangle] & holes) || impl_->alpha.is_present(triangle, u, v);
 }
 
 bool Intersections::is_single(uint32_t triangle) const {

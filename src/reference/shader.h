@@ -182,6 +182,7 @@ class Shader {
     std::optional<uint32_t> guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const;
     void guide(const Surface& surface, const Path& path, const Vec3& all, const Vec3& second, const Vec3& lit);
 
+    real roulette(const Path& next, const Path& path, uint32_t which) const;
     static Path next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which);
     Vec3 caught(const Surface& surface, const Path& path, const Meeting& meeting, const Branch& reflection);
@@ -230,6 +231,7 @@ class Shader {
     real environment_blur(const Cone& cone, real density) const;
     static Vec3 scattered_from(const Lit& at, const Vec3& direction);
     Vec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const;
+    static bool mirrors_drawn(const Optics& m);
     static bool scatters(const Optics& m);
     static Vec3 draw_scattered(const Lit& at, Vec2 random);
     static real scattered_density(const Lit& at, const Vec3& direction);

@@ -40,7 +40,7 @@ real lobe(real alpha, real n_h, real n_v, real n_l) {
 
 real albedo(real alpha, real n_v) {
     // In the root of n·l, for what grazes counts most and changes fastest; half of the circle is as the other.
-    constexpr int rings = 128, sectors = 64;
+    constexpr int rings = is_reference ? 128 : 32, sectors = is_reference ? 64 : 16;
     const real sine_v = std::sqrt(1 - n_v * n_v), hidden_v = hidden(alpha, n_v);
     real sum = 0;
     for (int i = 0; i < rings; i++) {

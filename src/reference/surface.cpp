@@ -144,7 +144,7 @@ real masked_roughness(const Surface& s, const Vec3& direction) {
 
 Surface Surfaces::at(uint32_t triangle, real u, real v, const Vec3& direction, real width) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
-    Place place{corners, {std::max(0.0, 1 - u - v), u, v}, 0};
+    Place place{corners, {std::max(0.0, 1 - u - v), u, v}, 0, nullptr, {}};
     const Vec3& weights = place.weights;
     Vec3 p[3], n[3];
     for (int i = 0; i < 3; i++) {
@@ -233,7 +233,16 @@ auto Surfaces::filtered(const MaterialTexture& use, const Place& place, bool is_
 }
 
 Vec4 Surfaces::data(const MaterialTexture& use, const Place& place, bool is_data) const {
-    return filtered(use, place, is_data, sample_data<real>);
+    const MaterialTexture* last = place.last_use;
+    if (is_data && last && last->texture == use.texture && last->uv_set == use.uv_set &&
+        last->uv_matrix == use.uv_matrix && last->uv_offset == use.uv_offset)
+        return place.last_data;
+    const Vec4 found = filtered(use, place, is_data, sample_data<real>);
+    if (is_data) {
+        place.last_use = &use;
+        place.last_data = found;
+    }
+    return found;
 }
 
 real Surfaces::number(const MaterialTexture& use, const Place& place) const {

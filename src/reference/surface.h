@@ -121,6 +121,9 @@ class Surfaces {
         glm::uvec3 corners;
         Vec3 weights;
         real seen;  ///< area of what the ray stands for, over that of the triangle
+        /// What the last use of a texture for data found, for many are there for several of their channels.
+        mutable const MaterialTexture* last_use = nullptr;
+        mutable Vec4 last_data{0};
         template <typename T>
         auto interpolate(const std::vector<T>& values) const {
             return glm::vec<T::length(), real>(values[corners.x]) * weights.x +

@@ -40,8 +40,9 @@ Vec3 Surroundings::level(const Vec2& uv, uint32_t level) const {
 /// A picture among the texels, between them.
 Vec3 Surroundings::picture(const Vec2& uv, size_t offset, uint32_t width, uint32_t height) const {
     return bilinear(uv * Vec2(width, height), [&](int x, int y) {
-        const auto column = size_t((x + int(width)) % int(width)), row = size_t(std::clamp(y, 0, int(height) - 1));
-        return Vec3(environment_.texels[offset + row * width + column]);
+        const int column = x < 0 ? x + int(width) : x >= int(width) ? x - int(width) : x;
+        const int row = std::clamp(y, 0, int(height) - 1);
+        return Vec3(environment_.texels[offset + size_t(row) * width + size_t(column)]);
     });
 }
 

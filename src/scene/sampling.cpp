@@ -9,11 +9,14 @@
 namespace peelray {
 namespace {
 
+/// `i`: from one before the first texel to one behind twice as many as there are. No division: it takes as long as all
+/// else.
 int wrap(int i, int size, Texture::Wrap mode) {
     if (mode == Texture::Wrap::clamp) return std::clamp(i, 0, size - 1);
     const int period = mode == Texture::Wrap::repeat ? size : 2 * size;
-    const int m = ((i % period) + period) % period;
-    return m < size ? m : period - 1 - m;
+    if (i < 0) i += period;
+    while (i >= period) i -= period;
+    return i < size ? i : period - 1 - i;
 }
 
 /// Of all that 8 bits can hold.
@@ -65,10 +68,17 @@ glm::vec<3, T> sample_color(const Texture& texture, const glm::vec<2, T>& uv, bo
 
 template <typename T>
 glm::vec<4, T> sample_data(const Texture& texture, const glm::vec<2, T>& uv, bool nearest) {
-    return sample(texture, uv, nearest, [&](size_t texel) {
-        const auto channel = [&](uint32_t i) { return T(channel_of(texture, texel, i)); };
-        return glm::vec<4, T>(channel(0), channel(1), channel(2), channel(3));
+    if (!texture.deep_texels.empty())
+        return sample(texture, uv, nearest, [&](size_t texel) {
+            const auto channel = [&](uint32_t i) { return T(channel_of(texture, texel, i)); };
+            return glm::vec<4, T>(channel(0), channel(1), channel(2), channel(3));
+        });
+    // The sum of the weights is 1: the division may come last.
+    const glm::vec<4, T> sum = sample(texture, uv, nearest, [&](size_t texel) {
+        const uint32_t all = texture.texels[texel];
+        return glm::vec<4, T>(T(all & 255), T(all >> 8 & 255), T(all >> 16 & 255), T(all >> 24));
     });
+    return sum / T(255);
 }
 
 template glm::vec3 sample_color(const Texture&, const glm::vec2&, bool);
