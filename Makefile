@@ -18,7 +18,7 @@ help:
 demo: build
 	@mkdir -p out
 	@TIMEFORMAT='out/demo.png: %R s from start to picture'; \
-	time $(PROGRAM) render builtin:teapots --size 1280x1024 -o out/demo.png
+	time $(PROGRAM) render builtin:teapots --tracer ldc --size 1280x1024 -o out/demo.png
 
 build: packages
 	@cmake --preset release --log-level=NOTICE

@@ -138,7 +138,8 @@ SettingList options_of(RenderArguments& a) {
                  .group = group,
                  .help = "count what rays cost, for the stats: cells stepped to, lists met, pixels, samples and "
                          "triangles tested; this slows rays down, so times mean nothing",
-                 .changes_picture = false});
+                 .changes_picture = false,
+                 .of_cubes = true});
     return list;
 }
 
@@ -228,12 +229,16 @@ SettingList options_of(TraceArguments& a) {
          .group = "Tracing",
          .help = "ldc: in the layered depth cubes; khr: by the device's own ray tracing, where it has one",
          .form = "ldc|cpu|reference|cubemap|khr",
-         .expected = "one of ldc|cpu|reference|cubemap|khr"},
-        [](const std::string& name) {
+         .expected = "one of ldc|cpu|reference|cubemap|khr",
+         .preset = "ldc"},
+        [](const std::string& name) -> std::optional<std::optional<Tracer>> {
             const auto tracer = value_named<Tracer>(name);
-            return tracer == Tracer::none ? std::nullopt : tracer;
+            if (!tracer || tracer == Tracer::none) return std::nullopt;
+            return tracer;
         },
-        [](Tracer tracer) { return std::optional<std::string>(name_of(tracer)); });
+        [](const std::optional<Tracer>& tracer) {
+            return tracer ? std::optional<std::string>(name_of(*tracer)) : std::nullopt;
+        });
     add_hit(list, a.tracing);
     add_tracing(list, a.tracing);
     add_device(list, a.device);

@@ -20,6 +20,7 @@ struct RenderArguments : PictureArguments {
     std::optional<float> noise_target;
     bool keep_partial = false;
     SequenceArguments sequence;
+    bool asks_for_cubes = false;  ///< by an option that is SettingInfo::of_cubes, or --validate
 
     bool is_sequence() const { return sequence.frames || sequence.turntable; }
 };

@@ -145,6 +145,12 @@ CLI::App* add_bench(CLI::App& program, BenchArguments& a) {
     return &app;
 }
 
+bool gives_any(const CLI::App& command, const SettingList& options, bool (*of)(const SettingInfo&)) {
+    return std::any_of(options.begin(), options.end(), [&](const SettingEntry& entry) {
+        return of(entry.info) && command.get_option(flag_of(entry.info))->count() > 0;
+    });
+}
+
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& a) {
     std::vector<GivenOption> given;
     for (const SettingEntry& entry : picture_settings(a, false)) {

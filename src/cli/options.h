@@ -12,6 +12,8 @@ CLI::App* add_compare(CLI::App& program, CompareArguments& arguments);
 CLI::App* add_trace(CLI::App& program, TraceArguments& arguments);
 CLI::App* add_bench(CLI::App& program, BenchArguments& arguments);
 
+/// Were any of the options that are `of` a kind given to the command?
+bool gives_any(const CLI::App& command, const SettingList& options, bool (*of)(const SettingInfo&));
 /// The options of a picture that were given to `compare`: `render` takes them as well.
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& arguments);
 

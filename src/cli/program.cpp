@@ -89,7 +89,13 @@ std::vector<Command> add_commands(CLI::App& program, Arguments& a) {
     CLI::App* devices = program.add_subcommand("devices", "List the Vulkan devices (for --device)")->footer("");
     CLI::App* view = program.add_subcommand("view", "Look around interactively (not built into this version)");
     view->allow_extras()->footer("");
-    return {{render, [&a] { run_within_limits(a.render, run_render); }},
+    return {{render,
+             [&a, render] {
+                 a.render.asks_for_cubes =
+                     a.render.device.validate ||
+                     gives_any(*render, options_of(a.render), [](const SettingInfo& info) { return info.of_cubes; });
+                 run_within_limits(a.render, run_render);
+             }},
             {compare,
              [&a, compare] {
                  a.compare.given = given_options(*compare, a.compare);

@@ -22,13 +22,14 @@ namespace fs = std::filesystem;
 /// Who answered for the rays, and times.
 std::string summary_of(const PictureStats& stats) {
     const RenderStats& s = stats.render;
-    if (stats.by_cpu()) return fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
-    std::string text;
-    if (stats.has_cubes()) text = fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
+    std::string text = s.tracer == Tracer::none ? "" : fmt::format(" by {}", name_of(s.tracer));
+    if (stats.by_cpu())
+        return text + fmt::format("; BVH {:.2f} s, rays {:.2f} s", s.build_ms * 1e-3, s.frame_ms * 1e-3);
+    if (stats.has_cubes()) text += fmt::format(", {} ({})", count_of_cubes(s.cubes), name_of(s.hit));
     if (s.tracer == Tracer::cubemap)
-        text = fmt::format(", {} of {}² texels a face, {}", counted("{} cube map{|s}", s.maps.probes), s.maps.face,
-                           counted("{} shadow map{|s}", s.maps.shadows.maps));
-    if (s.tracer == Tracer::khr) text = ", " + counted("{} acceleration structure{|s}", s.structures.bodies);
+        text += fmt::format(", {} of {}² texels a face, {}", counted("{} cube map{|s}", s.maps.probes), s.maps.face,
+                            counted("{} shadow map{|s}", s.maps.shadows.maps));
+    if (s.tracer == Tracer::khr) text += ", " + counted("{} acceleration structure{|s}", s.structures.bodies);
     if (s.timed)
         text += fmt::format("; GPU {:.2f} ms ({} {:.2f} ms)", s.frame_ms,
                             s.tracer == Tracer::cubemap ? "maps"
@@ -58,17 +59,18 @@ void report(const RenderArguments& a, const MadePicture& made, size_t triangles,
 
 }  // namespace
 
-void run_render(const RenderArguments& a) {
-    if (a.is_sequence()) return run_sequence(a);
+void run_render(const RenderArguments& given) {
     const auto start = std::chrono::steady_clock::now();
-    check(a);
+    check(given);
+    const RenderArguments a = with_tracer(given);
+    if (a.is_sequence()) return run_sequence(a);
     check_single(a);
     check_counters(a);
     check_ends(a);
     check_picture_name(a.output, a.exr_layers, a.is_transparent());
     if (!a.preview.empty()) check_picture_name(a.preview, false, a.is_transparent());
-    if (is_on_cpu(a.tracing.tracer) && a.repeat > 1)
-        fail("--repeat measures GPU frames; with --tracer {} leave it out", name_of(a.tracing.tracer));
+    if (is_on_cpu(*a.tracing.tracer) && a.repeat > 1)
+        fail("--repeat measures GPU frames; with --tracer {} leave it out", name_of(*a.tracing.tracer));
     const RenderSettings settings = render_settings(a);
     std::vector<fs::path> outputs = {a.output};
     for (const fs::path& path : paths_beside(a.output, a.aovs, a.exr_layers)) outputs.push_back(path);

@@ -6,11 +6,18 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "settings/aovs.h"
+#include "workspace/automatic_tracer.h"
 
 namespace peelray {
 
 static bool wants_costs(const RenderArguments& a) {
     return std::any_of(a.aovs.begin(), a.aovs.end(), [](Aov aov) { return cost_field(aov); });
+}
+
+RenderArguments with_tracer(RenderArguments a) {
+    if (!a.tracing.tracer)
+        a.tracing.tracer = a.asks_for_cubes || wants_costs(a) ? Tracer::ldc : automatic_tracer(a.device);
+    return a;
 }
 
 RenderSettings render_settings(const RenderArguments& a) {
@@ -51,7 +58,7 @@ void check_counters(const RenderArguments& a) {
     const char* option = a.counters ? "--counters" : wants_costs(a) ? "--aov cost_..." : nullptr;
     if (option && a.tracing.tracer != Tracer::ldc)
         fail("{} counts what rays cost in the cubes of --tracer ldc: --tracer {} has none; leave one of them out",
-             option, name_of(a.tracing.tracer));
+             option, name_of(*a.tracing.tracer));
     if (a.counters && a.stats.empty()) fail("what --counters counts goes into the stats: name a file (--stats)");
 }
 

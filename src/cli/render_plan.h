@@ -7,6 +7,8 @@
 
 namespace peelray {
 
+/// With a tracer: the one that was asked for; ldc if an option of the cubes was; else automatic_tracer().
+RenderArguments with_tracer(RenderArguments arguments);
 /// The picture's settings with what goes into other files.
 RenderSettings render_settings(const RenderArguments& arguments);
 /// Throws Error where what is to be counted cannot be or goes nowhere.

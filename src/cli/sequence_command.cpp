@@ -42,7 +42,7 @@ class Run {
         : sequence_(sequence), arguments_(at_first_frame(a, sequence)), workspace_(arguments_, print_note) {}
 
     const PosedScene& scene() const { return workspace_.scene(); }
-    std::string renderer_name() { return workspace_.renderer_name(arguments_.tracing.tracer); }
+    std::string renderer_name() { return workspace_.renderer_name(*arguments_.tracing.tracer); }
     size_t done() const { return done_; }
 
     using Write = std::function<void(uint32_t frame, const MadePicture& picture)>;

@@ -120,8 +120,9 @@ TraceStats trace_stats(Device& device, const Geometry& geometry, Tracer tracer, 
 
 void run_trace(const TraceArguments& a) {
     check(a.tracing);
-    if (a.tracing.tracer != Tracer::ldc && a.tracing.tracer != Tracer::khr)
-        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", name_of(a.tracing.tracer));
+    const Tracer tracer = a.tracing.tracer.value_or(Tracer::ldc);
+    if (tracer != Tracer::ldc && tracer != Tracer::khr)
+        fail("--tracer {} traces no rays from files: use --tracer ldc or khr", name_of(tracer));
     std::vector<std::filesystem::path> outputs = {a.hits};
     for (const auto& more : {a.stats, a.counters})
         if (!more.empty()) outputs.push_back(more);
@@ -136,7 +137,7 @@ void run_trace(const TraceArguments& a) {
     RenderSettings settings;
     choose_tracing(settings, a.tracing);
     choose_hit(settings, a.tracing.hit);
-    settings.tracer = a.tracing.tracer;
+    settings.tracer = tracer;
     settings.structures = StructureUpdate::keep;
 
     Device device({a.device.device, a.device.validate});

@@ -45,6 +45,8 @@ struct DeviceOptions {
 
 /// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
 std::vector<DeviceInfo> list_devices();
+/// The one that DeviceOptions::select names. Throws Error as making it does.
+DeviceInfo device_info(const std::string& select);
 
 /// What a device may offer beyond what all passes need; true where it is available.
 struct DeviceFeatures {

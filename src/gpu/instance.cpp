@@ -176,18 +176,27 @@ PhysicalDevice choose_device(VkInstance instance, const std::string& select) {
     return *chosen;
 }
 
+/// What is to be found out of an instance that is there for that alone.
+template <typename Find>
+static auto find_in_instance(Find find) {
+    struct Instance {
+        bool debug_utils = false;
+        VkInstance handle = create_instance(false, nullptr, debug_utils);
+        ~Instance() { vkDestroyInstance(handle, nullptr); }
+    } instance;
+    return find(instance.handle);
+}
+
 std::vector<DeviceInfo> list_devices() {
-    bool debug_utils = false;
-    VkInstance instance = create_instance(false, nullptr, debug_utils);
-    std::vector<DeviceInfo> infos;
-    try {
+    return find_in_instance([](VkInstance instance) {
+        std::vector<DeviceInfo> infos;
         for (const auto& device : physical_devices(instance)) infos.push_back(device.info);
-    } catch (...) {
-        vkDestroyInstance(instance, nullptr);
-        throw;
-    }
-    vkDestroyInstance(instance, nullptr);
-    return infos;
+        return infos;
+    });
+}
+
+DeviceInfo device_info(const std::string& select) {
+    return find_in_instance([&](VkInstance instance) { return choose_device(instance, select).info; });
 }
 
 }  // namespace peelray

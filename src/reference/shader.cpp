@@ -108,7 +108,7 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
 /// little that a picture's samples level out whether it is there goes on as often as it is bright, and brings as much
 /// more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
 real Shader::roulette(const Path& next, const Path& path, uint32_t which) const {
-    if (is_reference) return 1;
+    if (is_reference || context_.settings.spp == 1) return 1;
     const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);
     const real chance = largest(next.weight) / enough;
     if (chance >= 1 || next.guided) return 1;

@@ -27,6 +27,7 @@ struct SettingInfo {
     bool required = false;
     bool several = false;         ///< may be given several times: a list that grows
     bool changes_picture = true;  ///< false: it makes no difference to any picture or hit
+    bool of_cubes = false;        ///< whoever gives it means the layered depth cubes, or to measure a device
     /// Names of settings that it excludes, and of one without which it has no meaning.
     std::vector<std::string> excludes = {};
     std::string needs = {};

@@ -9,10 +9,12 @@ void add_tracer(SettingList& list, TracingArguments& a) {
     add_setting(list, a.tracer,
                 {.name = "tracer",
                  .group = "Effects",
-                 .help = "ldc: secondary rays, traced in the layered depth cube; reference: all rays on the CPU in "
-                         "double precision; cubemap: the baseline without rays, cube maps of each object's "
-                         "surroundings and shadow maps; none: neither; khr: secondary rays by the device's own ray "
-                         "tracing, where it has one (VK_KHR_ray_tracing_pipeline)"});
+                 .help = "ldc: secondary rays, traced in the layered depth cube; cpu: all rays on the CPU; reference: "
+                         "the same in double precision; cubemap: the baseline without rays, cube maps of each object's "
+                         "surroundings and shadow maps; khr: secondary rays by the device's own ray tracing, where it "
+                         "has one (VK_KHR_ray_tracing_pipeline); none: no rays; auto: ldc on a GPU or with an option "
+                         "of the cubes, else cpu",
+                 .none = "auto"});
 }
 
 void add_measuring(SettingList& list, PictureArguments& a) {
@@ -20,18 +22,21 @@ void add_measuring(SettingList& list, PictureArguments& a) {
                 {.name = "visibility",
                  .group = "Tracing",
                  .help = "what determines the surface that each pixel sees: compute shaders, or the graphics pipeline; "
-                         "auto: compute, if the device has 64-bit atomics and is not a software device"});
+                         "auto: compute, if the device has 64-bit atomics and is not a software device",
+                 .of_cubes = true});
     add_setting(list, a.repeat,
                 {.name = "repeat",
                  .group = "More output",
                  .help = "for measuring: render 2 or more frames after one that warms up; times are medians",
                  .limits = kRepeatLimits,
-                 .changes_picture = false});
+                 .changes_picture = false,
+                 .of_cubes = true});
     add_setting(list, a.rebuild,
                 {.name = "rebuild",
                  .group = "More output",
                  .help = "for measuring: build every cube or acceleration structure anew in every frame, as if "
-                         "everything changed its shape"});
+                         "everything changed its shape",
+                 .of_cubes = true});
 }
 
 }  // namespace

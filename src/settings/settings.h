@@ -178,9 +178,9 @@ inline void add_light(SettingList& list, LightArguments& a) {
 
 /// How rays are traced in the layered depth cube.
 struct TracingArguments {
-    Tracer tracer = Tracer::ldc;
-    std::optional<HitTest> hit;   ///< none: chosen by the number of triangles
-    std::optional<uint32_t> ldc;  ///< none: chosen for each part
+    std::optional<Tracer> tracer;  ///< none: ldc, but for what resolves it by the machine (automatic_tracer)
+    std::optional<HitTest> hit;    ///< none: chosen by the number of triangles
+    std::optional<uint32_t> ldc;   ///< none: chosen for each part
     double tolerance = 0.001;
     std::optional<BuilderKind> builder;  ///< none: compute
     Routing routing = Routing::geometry;
@@ -198,7 +198,8 @@ inline void add_hit(SettingList& list, TracingArguments& a) {
          .help = "exact: the triangles themselves; planar: the samples' planes, at a cost that does not depend on the "
                  "number of triangles; tolerance: the samples' depths, within --tolerance, as in the paper; auto: "
                  "exact up to a few million triangles (with --builder peel: planar)",
-         .none = "auto"});
+         .none = "auto",
+         .of_cubes = true});
 }
 
 inline void add_block(SettingList& list, glm::uvec2& block, SettingInfo info) {
@@ -207,6 +208,7 @@ inline void add_block(SettingList& list, glm::uvec2& block, SettingInfo info) {
     info.expected = "a number of pixels such as 8 or 8x4";
     info.preset = "8";
     info.limits = kBlockLimits;
+    info.of_cubes = true;
     add_setting(list, block, std::move(info), parse_block,
                 [](const glm::uvec2& value) { return std::optional(print_text(value)); });
 }
@@ -224,23 +226,27 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .form = "auto|N",
                  .expected = "auto or a number from 16 to 2048",
                  .none = "auto",
-                 .limits = kResolutionLimits});
+                 .limits = kResolutionLimits,
+                 .of_cubes = true});
     add_setting(list, a.tolerance,
                 {.name = "tolerance",
                  .group = group,
                  .help = "distance of a hit of --hit tolerance, world units",
-                 .limits = kToleranceLimits});
+                 .limits = kToleranceLimits,
+                 .of_cubes = true});
     add_setting(list, a.builder,
                 {.name = "builder",
                  .group = group,
                  .help = "what rasterises the layered depth cubes: compute shaders, or the graphics pipeline in one "
                          "pass (abuffer) or one pass per layer (peel, as in the paper); auto: compute",
-                 .none = "auto"});
+                 .none = "auto",
+                 .of_cubes = true});
     add_setting(list, a.routing,
                 {.name = "routing",
                  .group = group,
                  .help = "how the graphics pipeline sends triangles to the three images: a geometry shader, or three "
-                         "draws"});
+                         "draws",
+                 .of_cubes = true});
     add_setting(list, a.depth,
                 {.name = "depth",
                  .group = group,
@@ -250,17 +256,20 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                             .most = 32,
                             .step = 16,
                             .fault = "a depth of {} bits is not supported",
-                            .choose = "16 or 32"}});
+                            .choose = "16 or 32"},
+                 .of_cubes = true});
     add_setting(list, a.batch,
                 {.name = "batch",
                  .group = group,
                  .help = "for measuring: two-level and mipmap test four layers of a pixel at a time, or trace four "
-                         "rays at a time"});
+                         "rays at a time",
+                 .of_cubes = true});
     add_setting(list, a.traversal,
                 {.name = "traversal",
                  .group = group,
                  .help = "how rays walk through a cube: all of it at once by voxels, or one image after the other over "
-                         "blocks of pixels (two-level, as in the paper) or a full pyramid (mipmap)"});
+                         "blocks of pixels (two-level, as in the paper) or a full pyramid (mipmap)",
+                 .of_cubes = true});
     add_block(list, a.block, {.group = group, .help = "pixels per block with --traversal two-level, 2 to 32 a side"});
 }
 

@@ -35,7 +35,7 @@ static Backdrop backdrop_of(const LightArguments& a) {
 
 RenderSettings render_settings(const PictureArguments& a) {
     RenderSettings settings;
-    settings.tracer = a.tracing.tracer;
+    settings.tracer = a.tracing.tracer.value_or(Tracer::ldc);
     settings.width = a.size.x;
     settings.height = a.size.y;
     choose_tracing(settings, a.tracing);

@@ -152,7 +152,7 @@ TEST_F(RenderCommand, CountersNeedCubesAndStats) {
 }
 
 TEST_F(RenderCommand, MemoryByPartAndBuffer) {
-    expect_done(render(in("cube.obj"), {"--stats", out("s.json")}), {"a.png", "s.json"});
+    expect_done(render(in("cube.obj"), {"--stats", out("s.json"), "--tracer", "ldc"}), {"a.png", "s.json"});
     const auto stats = nlohmann::json::parse(get(out("s.json")));
     for (const auto& memory : {stats["memory"], stats["memory"]["peak"]}) {
         uint64_t all = 0;
@@ -201,14 +201,16 @@ TEST_F(RenderCommand, CubeMaps) {
 TEST_F(RenderCommand, SameInputSameFile) {
     // Linear half floats: 8 bits of a .png would hide small differences.
     for (const std::string scene : {"builtin:teapots", "builtin:glass"})
-        for (const std::string spp : {"1", "2"}) {
-            std::string files[2];
-            for (std::string& file : files) {
-                expect_done(render(scene, {"--spp", spp}, "a.exr"), {"a.exr"});
-                file = get(out("a.exr"));
+        for (const std::string spp : {"1", "2"})
+            for (const std::string tracer : {"ldc", "cpu"}) {
+                std::string files[2];
+                for (std::string& file : files) {
+                    expect_done(render(scene, {"--spp", spp, "--tracer", tracer}, "a.exr"), {"a.exr"});
+                    file = get(out("a.exr"));
+                }
+                EXPECT_TRUE(files[0] == files[1])
+                    << scene << " by " << tracer << " with --spp " << spp << " differs from run to run";
             }
-            EXPECT_TRUE(files[0] == files[1]) << scene << " with --spp " << spp << " differs from run to run";
-        }
 }
 
 TEST_F(RenderCommand, CamerasByNameAndNumber) {
@@ -425,13 +427,13 @@ TEST_F(RenderCommand, TrianglesWithoutAreaAreCounted) {
 }
 
 TEST_F(RenderCommand, RepeatedFramesAreTheSamePicture) {
-    const std::string once = bytes(in("cube.obj"), {"--floor"});
+    const std::string once = bytes(in("cube.obj"), {"--floor", "--tracer", "ldc"});
     EXPECT_EQ(bytes(in("cube.obj"), {"--floor", "--repeat", "3"}), once);
 }
 
 TEST_F(RenderCommand, OldPictureIsReplacedAndCacheMayBeUnwritable) {
     put("out/a.png", "old");
-    expect_done(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", "1x1"},
+    expect_done(run({"render", in("cube.obj"), "-o", out("a.png"), "--size", "1x1", "--tracer", "ldc"},
                     {{"XDG_CACHE_HOME", "/proc/none"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}),
                 {"a.png"});
     EXPECT_EQ(read_ldr(out("a.png")).width, 1u);

@@ -1,5 +1,8 @@
-// Pictures by the double-precision path tracer, for the tests here and those of ../closed_forms.
+// Pictures by the CPU's path tracer, for the tests here and those of ../closed_forms: in double precision or, where
+// PEELRAY_TEST_SINGLE is set, in single.
 #pragma once
+
+#include <cstdlib>
 
 #include <scenes.h>
 
@@ -18,9 +21,9 @@ struct RenderSettings : PictureSettings {
 };
 using RenderResult = Picture;
 
-/// Does a device make the pictures? Hundreds of them, of many materials, are left to the reference, which it is held
-/// to.
-inline constexpr bool kOnDevice = false;
+inline const Precision kPrecision = std::getenv("PEELRAY_TEST_SINGLE") ? Precision::single_ : Precision::double_;
+/// Is what makes the pictures held to the reference? Hundreds of them, of many materials, are left to that.
+inline const bool kOnDevice = kPrecision == Precision::single_;
 
 inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
     RenderSettings s;
@@ -37,12 +40,13 @@ class PictureTest : public testing::Test {
         const Geometry geometry = flatten(stage.scene);
         const Moment rest = at_rest(stage.scene);
         const Emitters emitters = emitters_of(stage.scene, assemble(stage.scene, rest, motion_of(stage.scene, "")));
-        return PathTracer(stage.scene, rest, geometry, environment, emitters).render(settings, {}, threads);
+        return PathTracer(stage.scene, rest, geometry, environment, emitters, kPrecision)
+            .render(settings, {}, threads);
     }
     /// The same while somebody looks on.
     Picture watched(const Stage& stage, const RenderSettings& settings, const PictureWatch& watch) {
         const Geometry geometry = flatten(stage.scene);
-        return PathTracer(stage.scene, at_rest(stage.scene), geometry, black).render(settings, watch);
+        return PathTracer(stage.scene, at_rest(stage.scene), geometry, black, {}, kPrecision).render(settings, watch);
     }
     /// Of a moment of the scene's first animation, if it has any; with Aovs::motion since the moment `before`.
     Picture render_at(const Scene& scene, double time, double before, RenderSettings settings) {
@@ -51,7 +55,7 @@ class PictureTest : public testing::Test {
         settings.aovs = settings.motion = true;
         settings.moment_before = &then;
         const Geometry geometry = flatten(scene, now);
-        return PathTracer(scene, now, geometry, black).render(settings);
+        return PathTracer(scene, now, geometry, black, {}, kPrecision).render(settings);
     }
     const Environment black = color_environment(glm::vec3(0)), white = color_environment(glm::vec3(1));
 };
