@@ -14,6 +14,7 @@ namespace {
 /// Paths that bring this much of a pixel's light, per sample of it, are followed for certain, and those that bring the
 /// most of it that is asked for: at 64 samples the error that the others leave is below 2 % of what they bring.
 constexpr real ROULETTE_PER_SAMPLE = 1.0 / 256, MOST_ROULETTE = 0.25;
+constexpr uint32_t LEAST_FOR_ROULETTE = 16;
 
 }  // namespace
 
@@ -108,7 +109,7 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
 /// little that a picture's samples level out whether it is there goes on as often as it is bright, and brings as much
 /// more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
 real Shader::roulette(const Path& next, const Path& path, uint32_t which) const {
-    if (is_reference || context_.settings.spp == 1) return 1;
+    if (is_reference || context_.settings.spp < LEAST_FOR_ROULETTE) return 1;
     const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);
     const real chance = largest(next.weight) / enough;
     if (chance >= 1 || next.guided) return 1;

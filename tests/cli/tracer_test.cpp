@@ -1,7 +1,6 @@
 // Which tracer draws a picture that names none, and how near the one on the CPU comes to the reference. The tests' device
 // is a software device.
 #include "cli/program_fixture.h"
-#include "image/files.h"
 
 namespace peelray {
 namespace {
@@ -46,10 +45,7 @@ TEST_F(TracerTest, ASoftwareDeviceIsLeftToTheCpu) {
 /// Whoever speaks of cubes, or wants to have a device measured or checked, means them.
 TEST_F(TracerTest, OptionsOfTheCubesChooseThem) {
     const Words mirror = {"--material", "mirror", "--size", "16x16"};
-    for (const Words& words :
-         {Words{"--ldc", "32"}, {"--hit", "auto"}, {"--builder", "compute"}, {"--traversal", "voxel"}, {"--block", "8"},
-          {"--tolerance", "0.001"}, {"--batch", "none"}, {"--routing", "geometry"}, {"--depth", "32"}, {"--counters"},
-          {"--rebuild"}, {"--aov", "cost_steps"}, {"--repeat", "2"}, {"--visibility", "auto"}, {"--validate"}}) {
+    for (const Words& words : {Words{"--hit", "auto"}, {"--counters"}, {"--aov", "cost_steps"}, {"--validate"}}) {
         SCOPED_TRACE(words[0]);
         Words all = words;
         all.insert(all.end(), mirror.begin(), mirror.end());
