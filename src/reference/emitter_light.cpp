@@ -24,6 +24,19 @@ real Shader::emission_share(const Path& path, const Hit& hit) const {
     return path.density / (path.density + emitter_density(hit.triangle, probability, path.direction, hit.t));
 }
 
+/// What a point of a triangle sends against a direction.
+Vec3 Shader::emission_towards(uint32_t triangle, real u, real v, const Vec3& direction) const {
+    if (const auto plain = context_.surfaces.plain_emission(triangle, u, v)) {
+        const auto [a, b, c] = context_.surfaces.corners(triangle);
+        const bool front = glm::dot(glm::cross(b - a, c - a), direction) < 0;
+        return front || !context_.triangles.is_single(triangle) ? *plain : Vec3(0);
+    }
+    const Surface lamp = context_.surfaces.at(triangle, u, v, direction);
+    if (!lamp.front && context_.triangles.is_single(triangle)) return Vec3(0);
+    const real coat = context_.albedos.coat(lamp, -glm::dot(direction, lamp.coat_normal));
+    return lamp.optics.emissive * lamp.optics.alpha * (1 - coat);
+}
+
 /// From one point of one triangle.
 Vec3 Shader::emitter_light(const Lit& at) {
     if (!scatters(at.surface.optics) && !mirrors_drawn(at.surface.optics)) return Vec3(0);
@@ -41,10 +54,10 @@ Vec3 Shader::emitter_light(const Lit& at) {
     const bool followed = context_.settings.reflection && !is_last(at.path, false);
     const Vec3 share = scattered_from(at, direction) / density + mirrored_from(at, {direction, density}, followed);
     if (share == Vec3(0) || !context_.triangles.is_present(emitter.id, u, v)) return Vec3(0);
-    const Surface lamp = context_.surfaces.at(emitter.id, u, v, direction);
-    if (!lamp.front && context_.triangles.is_single(emitter.id)) return Vec3(0);
-    const real coat = context_.albedos.coat(lamp, -glm::dot(direction, lamp.coat_normal));
-    const Vec3 light = share * lamp.optics.emissive * lamp.optics.alpha * (1 - coat);
+    const Vec3 most = share * at.path.weight * context_.surfaces.optics_of_triangle(emitter.id).emissive;
+    const real kept = roulette(largest(most) / context_.surroundings.usual(), at.path, RANDOM_EMITTER_ROULETTE);
+    if (kept == 0) return Vec3(0);
+    const Vec3 light = share * emission_towards(emitter.id, u, v, direction) / kept;
     if (light == Vec3(0)) return light;
     return light * arriving(at, start_to(at, direction), direction, distance * (1 - EMITTER_GAP));
 }

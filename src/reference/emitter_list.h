@@ -21,7 +21,11 @@ class EmitterList {
     real probability(uint32_t triangle) const { return empty() ? 0 : real(probabilities_[triangle]); }
 
   private:
+    static constexpr size_t buckets = 1024;
+
     Emitters emitters_;
+    std::vector<float> cumulative_;
+    std::vector<uint32_t> first_;  ///< of each bucket of random numbers: whom its least one chooses
     std::vector<float> probabilities_;  ///< by triangle; empty where nothing emits
 };
 

@@ -1,5 +1,6 @@
 #include "reference/random_numbers.h"
 
+#include <array>
 #include <bit>
 
 #include "path/shading_numbers.h"
@@ -34,12 +35,21 @@ uint32_t scrambled(uint32_t v, uint32_t key) {
     return reversed(r);
 }
 
-/// The second dimension: each direction number is the one before, exclusive or itself a place lower.
+/// What each value of each byte of an index brings to the second dimension: each direction number is the one before,
+/// exclusive or itself a place lower. Bit by bit they took a twentieth of a picture's time.
+constexpr auto kSobolOfBytes = [] {
+    std::array<std::array<uint32_t, 256>, 4> table{};
+    uint32_t number = 1u << 31;
+    for (auto& of_byte : table)
+        for (uint32_t bit = 0; bit < 8; bit++, number ^= number >> 1)
+            for (uint32_t value = 0; value < 256; value++)
+                if (value >> bit & 1) of_byte[value] ^= number;
+    return table;
+}();
+
 uint32_t sobol(uint32_t index) {
-    uint32_t point = 0;
-    for (uint32_t number = 1u << 31; index != 0; index >>= 1, number ^= number >> 1)
-        if (index & 1) point ^= number;
-    return point;
+    return kSobolOfBytes[0][index & 255] ^ kSobolOfBytes[1][index >> 8 & 255] ^ kSobolOfBytes[2][index >> 16 & 255] ^
+           kSobolOfBytes[3][index >> 24];
 }
 
 }  // namespace

@@ -98,22 +98,21 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
         return untraced(branch, path);
     }
     Path next = next_path(branch, surface, path, triangle, which);
-    const real kept = roulette(next, path, which);
+    next.guided = guided;
+    const real kept = guided ? 1 : roulette(largest(next.weight), path, RANDOM_ROULETTE + which);
     if (kept == 0) return Vec3(0);
     next.weight /= kept;
-    next.guided = guided;
     return branch.weight * radiance(next, hit(next)) / kept;
 }
 
-/// Chance that a path was followed, 0 if it is not. The reference follows all: in single precision one that brings so
-/// little that a picture's samples level out whether it is there goes on as often as it is bright, and brings as much
-/// more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
-real Shader::roulette(const Path& next, const Path& path, uint32_t which) const {
+/// Chance that a path was followed which brings that much of a pixel's usual light, 0 if it is not. The reference
+/// follows all: in single precision one that brings so little that a picture's samples level out whether it is there goes
+/// on as often as it is bright, and brings as much more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
+real Shader::roulette(real brings, const Path& path, uint32_t purpose) const {
     if (is_reference || context_.settings.spp < LEAST_FOR_ROULETTE) return 1;
     const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);
-    const real chance = largest(next.weight) / enough;
-    if (chance >= 1 || next.guided) return 1;
-    return random(path, RANDOM_ROULETTE + which).x < chance ? chance : 0;
+    if (!(brings < enough)) return 1;
+    return random(path, purpose).x * enough < brings ? brings / enough : 0;
 }
 
 Shader::Path Shader::next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,

@@ -182,7 +182,7 @@ class Shader {
     std::optional<uint32_t> guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const;
     void guide(const Surface& surface, const Path& path, const Vec3& all, const Vec3& second, const Vec3& lit);
 
-    real roulette(const Path& next, const Path& path, uint32_t which) const;
+    real roulette(real brings, const Path& path, uint32_t purpose) const;
     static Path next_path(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle,
                           uint32_t which);
     Vec3 caught(const Surface& surface, const Path& path, const Meeting& meeting, const Branch& reflection);
@@ -239,6 +239,7 @@ class Shader {
     Branch diffuse_branch(const Lit& at) const;
     real emitter_density(uint32_t triangle, real probability, const Vec3& direction, real distance) const;
     real emission_share(const Path& path, const Hit& hit) const;
+    Vec3 emission_towards(uint32_t triangle, real u, real v, const Vec3& direction) const;
     Vec3 emitter_light(const Lit& at);
     Vec3 visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media) const;
     real index_of(uint32_t medium, Channel channel) const;

@@ -200,6 +200,14 @@ Surface Surfaces::at(uint32_t triangle, real u, real v, const Vec3& direction, r
     return s;
 }
 
+std::optional<Vec3> Surfaces::plain_emission(uint32_t triangle, real u, real v) const {
+    const uint32_t material = geometry_.materials[triangle];
+    const Material& m = scene_.materials[material];
+    if (m.clearcoat > 0 || m.blended) return {};
+    const Place place{geometry_.triangles[triangle], {std::max(0.0, 1 - u - v), u, v}, 0, nullptr, {}};
+    return optics_[material].emissive * color(m.emissive_texture, place);
+}
+
 bool Surfaces::blocks_itself(const Surface& s, uint32_t triangle, const Vec3& direction) const {
     const real height = glm::dot(s.shadow_start - s.position, s.geometric), fall = -glm::dot(direction, s.geometric);
     if (fall <= 0) return false;

@@ -102,6 +102,8 @@ class Surfaces {
     /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction` by a ray that
     /// stands for light of this `width` (0: a point, which textures do not blur).
     Surface at(uint32_t triangle, real u, real v, const Vec3& direction, real width = 0) const;
+    /// The emission there, where it is the same in all directions: below no coat, of what is not blended.
+    std::optional<Vec3> plain_emission(uint32_t triangle, real u, real v) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
     bool blocks_itself(const Surface& surface, uint32_t triangle, const Vec3& direction) const;
     /// Of a triangle.

@@ -77,6 +77,10 @@ Vec3 Surroundings::irradiance(const Vec3& n) const {
     return glm::max(sum, Vec3(0));
 }
 
+real Surroundings::usual() const {
+    return std::max(0.0, optics::largest(Vec3(environment_.irradiance[0])) / optics::pi);
+}
+
 /// All directions of a cell are alike.
 real Surroundings::density_in(const Cell& cell, real probability) const {
     const real rows = 1u << environment_.distribution.depth;

@@ -21,6 +21,8 @@ class Surroundings {
     Vec3 seen(const Vec3& direction, real blur, bool sees_sun, real rough_limit) const;
     /// What the camera sees of it blurred (Environment::has_blurred).
     Vec3 blurred(const Vec3& direction) const;
+    /// Mean over all directions, of the brightest channel.
+    real usual() const;
     /// Of the environment on a surface with this normal, from nine harmonics.
     Vec3 irradiance(const Vec3& normal) const;
 
