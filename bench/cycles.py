@@ -9,14 +9,22 @@ docs/cycles.md. Writes for each file OUT/NAME.cycles.exr and NAME.direct.exr, bo
 compare`, and with ImageMagick (`montage`) OUT/sheet.png: the program; Cycles, FLIP; Cycles without diffuse bounces, FLIP; and
 OUT/small.webp, which is docs/cycles.webp. Needs Blender 3.4 (Debian: `apt-get install --no-install-recommends blender
 python3-numpy`).
+
+    bench/cycles.py --times --env spiaggia_di_mondello_1k.hdr --bounces 4 [--repeat 5] [--files A.glb,B.glb]
+
+prints CPU seconds (user and system, of the whole process) instead: the program with `--tracer auto` and Cycles in turn, at 480x384 with
+64 samples each, from the camera that frames the file in the program; medians.
 """
 import argparse
 import base64
+import glob
 import json
 import math
 import os
 import re
+import resource
 import shutil
+import statistics
 import struct
 import subprocess
 import sys
@@ -32,6 +40,8 @@ SCENES = [  # name, file, eye, look, vertical field of view in degrees
     ("ToyCar", "ToyCar/ToyCar.gltf", (-0.043, 0.024, 0.076), (0, -0.003, 0), 40),
     ("AnisotropyRotationTest", "AnisotropyRotationTest.glb", (0.56, -0.5, 13), (0.56, -0.5, 0), 40),
 ]
+TIMED = ("WaterBottle.glb,NormalTangentMirrorTest.glb,GlassVaseFlowers.glb,AlphaBlendModeTest.glb,EmissiveStrengthTest.glb,"
+         "ClearCoatTest.glb,SheenChair.gltf,ToyCar.gltf,CesiumMan.glb,TransmissionTest.glb")
 LOBES = [  # direction, radiance in its middle, how narrow
     ((-0.6, 0.7, 0.5), (5.0, 4.2, 3.2), 16),
     ((0.9, 0.2, 0.4), (0.8, 1.4, 2.4), 16),
@@ -74,15 +84,15 @@ def vector(v):
     return ",".join(str(c) for c in v)
 
 
-def render_cycles(a, path, view, stem, pictures):
+def render_cycles(a, path, view, stem, pictures, run=run, **more):
     eye, look, fov = view
     job = {"file": path, "env": a.env, "eye": eye, "look": look, "fov": fov, "size": a.size, "samples": a.samples,
-           "bounces": a.bounces, "pictures": pictures}
+           "bounces": a.bounces, "pictures": pictures, **more}
     with open(stem + ".json", "w", encoding="utf-8") as file:
         json.dump(job, file)
     script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "cycles_blender.py")
     # Debian's Blender takes its modules from the first python3 of PATH: it must be Debian's, which has numpy.
-    run([a.blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", script, "--", stem + ".json"],
+    return run([a.blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", script, "--", stem + ".json"],
         env={**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]})
 
 
@@ -105,6 +115,41 @@ def compare(a, path, view, stem, pictures):
     return flip, [files["ldc"]] + [files[prefix + name] for name in names for prefix in ("", "FLIP: ")]
 
 
+def cpu_seconds(words, **options):
+    """Of the whole process, children included: user and system."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run(words, **options)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def times(a):
+    """The table of --times."""
+    print("| file | CPU s | Cycles, CPU s | of its time |\n|---|---:|---:|---:|", flush=True)
+    for file in a.files.split(","):
+        found = sorted(glob.glob(os.path.join(a.models, "..", "**", glob.escape(file)), recursive=True))
+        if not found:
+            print(f"{file}: not among the models", file=sys.stderr)
+            continue
+        path, name = os.path.abspath(found[0]), file.split(".")[0]
+        stem = os.path.join(a.out, name)
+        common = [a.program, "render", path, "--env", a.env, "--size", f"{a.size[0]}x{a.size[1]}", "--bounces", str(a.bounces)]
+        moment = {"time": a.moment} if name == "CesiumMan" else {}
+        still = ["--time", str(a.moment)] if moment else []
+        run(common + still + ["-o", stem + ".png", "--stats", stem + ".json"])
+        with open(stem + ".json", encoding="utf-8") as stats:
+            camera = json.load(stats)["camera"]
+        view = (camera["eye"], camera["look"], camera["fov"])
+        ours = common + still + ["--spp", str(a.spp), "-o", stem + ".png", "--eye=" + vector(view[0]), "--look=" + vector(view[1]),
+                                 "--fov", str(view[2])]
+        both = []
+        for _ in range(a.repeat):
+            both.append((cpu_seconds(ours), render_cycles(a, path, view, stem, [[stem + ".exr", a.bounces]], cpu_seconds, energy=False,
+                                                                **moment)))
+        mine, theirs = (statistics.median(column) for column in zip(*both))
+        print(f"| {name} | {mine:.1f} | {theirs:.1f} | {mine / theirs:.2f} |", flush=True)
+
+
 def sheet(path, rows, labels, across, size):
     """One row of pictures for each file, as many as there are labels; `across` files side by side."""
     tiles = [word for name, pictures in rows for label, picture in zip(labels, pictures) for word in ("-label", label or name, picture)]
@@ -120,9 +165,13 @@ def main():
     parser.add_argument("--out", default="out/cycles")
     parser.add_argument("--only", help="files whose name contains this")
     parser.add_argument("--env", help="environment map; default: a soft one that is made here")
-    parser.add_argument("--size", default="320x256")
+    parser.add_argument("--size", help="default: 320x256; of --times 480x384")
     parser.add_argument("--spp", type=int, default=64, help="the program's samples per pixel")
-    parser.add_argument("--samples", type=int, default=128, help="Cycles' samples per pixel")
+    parser.add_argument("--samples", type=int, help="Cycles' samples per pixel; default: 128, of --times the program's")
+    parser.add_argument("--times", action="store_true", help="compare CPU seconds, not pictures")
+    parser.add_argument("--files", default=TIMED, help="of --times")
+    parser.add_argument("--repeat", type=int, default=5, help="of --times")
+    parser.add_argument("--moment", type=float, default=0.4, help="of what is animated, with --times")
     parser.add_argument("--bounces", type=int, default=8)
     parser.add_argument("--exposure", default=0, help="of what is compared and shown, in stops")
     parser.add_argument("--keep", action="store_true", help="use the pictures by Cycles that an earlier run left in OUT")
@@ -131,11 +180,14 @@ def main():
         sys.exit("Blender is missing: apt-get install --no-install-recommends blender python3-numpy (or name it with --blender)")
     a.out = os.path.abspath(a.out)
     os.makedirs(a.out, exist_ok=True)
-    a.size = [int(n) for n in a.size.split("x")]
+    a.size = [int(n) for n in (a.size or ("480x384" if a.times else "320x256")).split("x")]
+    a.samples = a.samples or (a.spp if a.times else 128)
     if not a.env:
         a.env = os.path.join(a.out, "soft.hdr")
         write_environment(a.env, soft_radiance)
     a.env = os.path.abspath(a.env)
+    if a.times:
+        return times(a)
     rows = []
     print("| file | FLIP | without diffuse bounces |\n|---|---:|---:|", flush=True)
     for name, path, *view in chosen(SCENES, a.models, a.only):

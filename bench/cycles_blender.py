@@ -3,7 +3,7 @@
     blender -b --factory-startup --python-exit-code 1 --python bench/cycles_blender.py -- JOB.json
 
 JOB.json holds: file, env (equirectangular), eye, look, fov (degrees, vertical), size, samples, bounces, and `pictures`, a list of
-[OpenEXR file to write, number of diffuse bounces]. Directions are glTF's: +y is up.
+[OpenEXR file to write, number of diffuse bounces]; on demand `time` (seconds of the animation) and `energy` (false: plain GGX). Directions are glTF's: +y is up.
 """
 import json
 import math
@@ -90,7 +90,12 @@ def main():
     add_camera(scene, job)
     set_world(scene, job["env"])
     set_rendering(scene, job)
-    compensate_energy()
+    if "time" in job:
+        scene.frame_set(0, subframe=0)
+        at = job["time"] * scene.render.fps / scene.render.fps_base
+        scene.frame_set(int(at), subframe=at - int(at))
+    if job.get("energy", True):
+        compensate_energy()
     for path, diffuse_bounces in job["pictures"]:
         scene.cycles.diffuse_bounces = diffuse_bounces
         scene.render.filepath = path

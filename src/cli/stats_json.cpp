@@ -235,11 +235,23 @@ static void add_render_json(Json& json, const PictureStats& stats) {
     json["redone"] = s.redone;
 }
 
+/// As --eye, --look, --up and --fov take it.
+static Json camera_json(const Camera& camera, const glm::dvec3& origin) {
+    const auto list = [](const auto& v) { return Json::array({v.x, v.y, v.z}); };
+    Json json = {{"eye", list(camera.eye + origin)}, {"look", list(camera.look + origin)}, {"up", list(camera.up)}};
+    if (camera.orthographic_height > 0)
+        json["orthographic_height"] = camera.orthographic_height;
+    else
+        json["fov"] = glm::degrees(double(camera.vertical_fov));
+    return json;
+}
+
 Json picture_json(const PictureStats& stats) {
     const RenderStats& s = stats.render;
     Json json = {{"tracer", name_of(s.tracer)}};
     json.update(machine_json(stats.machine));
     json["image"] = {stats.width, stats.height};
+    json["camera"] = camera_json(stats.camera, stats.origin);
     json["samples"] = samples_json(stats.samples);
     json["triangles"] = stats.triangles;
     json["timed"] = s.timed;

@@ -23,6 +23,7 @@ PictureStats picture_stats(const Machine& machine, const PosedScene& scene, cons
     stats.triangles = scene.triangles();
     stats.box = scene.bounds();
     stats.origin = scene.scene().origin;
+    stats.camera = scene.camera();
     stats.samples = picture.samples;
     stats.rays = picture.rays;
     return stats;

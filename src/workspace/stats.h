@@ -26,6 +26,7 @@ struct PictureStats {
     uint64_t triangles = 0;  ///< of the scene, with all instances
     Box box;                 ///< of the scene, relative to `origin`
     glm::dvec3 origin{0};    ///< Scene::origin
+    Camera camera;           ///< that the picture is seen from, but for Shot::turn; relative to `origin`
     SamplesMade samples;
     RayCounts rays;
     RenderStats render;           ///< where is_on_cpu() only times and passes
