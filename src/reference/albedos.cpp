@@ -75,6 +75,7 @@ Albedos::Means Albedos::between(Table* first, const Optics& constants, real roug
 }
 
 Albedos::Means Albedos::at(const Surface& surface, real cosine) const {
+    if (cosine == surface.means_cosine) return surface.means;
     const Optics &constants = surfaces_.optics(surface.material), &here = surface.optics;
     Table* first = &tables_[first_table_[surface.material]];
     const bool varies = first_table_[surface.material + 1] > first_table_[surface.material] + 1;
@@ -82,6 +83,8 @@ Albedos::Means Albedos::at(const Surface& surface, real cosine) const {
                          : look_up(*first, constants, constants.roughness, cosine);
     // Schlick's is linear in both reflectances, which textures change.
     if (here.specified) means.dielectric = here.f0 * means.normal + here.f90 * means.grazing;
+    surface.means = means;
+    surface.means_cosine = cosine;
     return means;
 }
 

@@ -15,14 +15,7 @@ namespace peelray::inline PRECISION {
 /// Of each material, worked out when it is first asked for; threads may ask at once. The surfaces must outlive it.
 class Albedos {
   public:
-    struct Means {
-        Vec3 dielectric{0};            ///< share of the dielectric part
-        real normal = 0, grazing = 0;  ///< a metal's, by what it reflects at normal incidence: `metal`
-        real masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
-        /// To the microfacet whose grazing light, as Schlick's formula has it, is the mean.
-        real cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
-        Vec3 metal(const Vec3& base_color) const { return base_color * normal + grazing; }
-    };
+    using Means = AlbedoMeans;
 
     Albedos(const Scene& scene, const Surfaces& surfaces);
 

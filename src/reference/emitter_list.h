@@ -25,7 +25,7 @@ class EmitterList {
 
     Emitters emitters_;
     std::vector<float> cumulative_;
-    std::vector<uint32_t> first_;  ///< of each bucket of random numbers: whom its least one chooses
+    std::vector<uint32_t> first_;       ///< of each bucket of random numbers: whom its least one chooses
     std::vector<float> probabilities_;  ///< by triangle; empty where nothing emits
 };
 

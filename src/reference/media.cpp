@@ -8,19 +8,42 @@
 namespace peelray::inline PRECISION {
 
 uint32_t Media::depth(uint32_t material) const {
-    return uint32_t(std::count(entered_.begin(), entered_.end(), material));
+    return uint32_t(std::ranges::count(entered(), material));
+}
+
+void Media::enter(uint32_t material) {
+    if (more_.empty() && count_ < few_.size()) {
+        few_[count_++] = material;
+        return;
+    }
+    if (more_.empty()) more_.assign(few_.begin(), few_.end());
+    more_.push_back(material);
 }
 
 void Media::leave(uint32_t material) {
-    const auto at = std::find(entered_.begin(), entered_.end(), material);
-    if (at != entered_.end()) entered_.erase(at);
+    const auto at = std::ranges::find(entered(), material) - entered().begin();
+    if (at == std::ptrdiff_t(entered().size())) return;
+    if (!more_.empty()) {
+        more_.erase(more_.begin() + at);
+        if (more_.empty()) count_ = 0;
+        return;
+    }
+    std::copy(few_.begin() + at + 1, few_.begin() + count_, few_.begin() + at);
+    count_--;
+}
+
+size_t Media::kinds() const {
+    size_t kinds = 0;
+    const auto all = entered();
+    for (size_t i = 0; i < all.size(); i++) kinds += std::ranges::find(all.first(i), all[i]) == all.first(i).end();
+    return kinds;
 }
 
 uint32_t Media::counting(const MediaRanks& ranks) const {
-    const auto first = std::min_element(entered_.begin(), entered_.end(), [&](uint32_t a, uint32_t b) {
-        return ranks.of_material[a] < ranks.of_material[b];
-    });
-    return first == entered_.end() ? air : *first;
+    uint32_t first = air;
+    for (const uint32_t material : entered())
+        if (first == air || ranks.of_material[material] < ranks.of_material[first]) first = material;
+    return first;
 }
 
 bool MediaWalk::bounds_medium(uint32_t triangle) const {

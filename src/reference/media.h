@@ -2,8 +2,9 @@
 // Private to src/reference.
 #pragma once
 
+#include <array>
 #include <optional>
-#include <set>
+#include <span>
 #include <vector>
 
 #include "reference/intersections.h"
@@ -19,16 +20,20 @@ class Media {
 
     uint32_t depth(uint32_t material) const;
     bool holds(uint32_t material) const { return depth(material) > 0; }
-    void enter(uint32_t material) { entered_.push_back(material); }
+    void enter(uint32_t material);
     /// Without effect if the path is not in it.
     void leave(uint32_t material);
     /// How many there are.
-    size_t kinds() const { return std::set<uint32_t>(entered_.begin(), entered_.end()).size(); }
+    size_t kinds() const;
     /// The material whose medium counts, or air.
     uint32_t counting(const MediaRanks& ranks) const;
 
   private:
-    std::vector<uint32_t> entered_;
+    std::span<const uint32_t> entered() const { return more_.empty() ? std::span(few_).first(count_) : more_; }
+    /// Each path has several: few materials are kept in place, all others in a list.
+    std::array<uint32_t, 4> few_{};
+    uint32_t count_ = 0;  ///< in `few_`
+    std::vector<uint32_t> more_;
 };
 
 /// What a ray meets.

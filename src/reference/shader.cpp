@@ -11,10 +11,10 @@ using namespace optics;
 
 namespace {
 
-/// Paths that bring this much of a pixel's light, per sample of it, are followed for certain, and those that bring the
-/// most of it that is asked for: at 64 samples the error that the others leave is below 2 % of what they bring.
-constexpr real ROULETTE_PER_SAMPLE = 1.0 / 256, MOST_ROULETTE = 0.25;
-constexpr uint32_t LEAST_FOR_ROULETTE = 16;
+/// Paths that bring a pixel this much of its light, per sample, are followed for certain, and those that bring the most
+/// of it that is asked for: at 64 samples the error that the others leave is about 2 % of what they bring.
+constexpr real ROULETTE_PER_SAMPLE = 1.0 / 192, MOST_ROULETTE = 1.0 / 3;
+constexpr uint32_t LEAST_FOR_ROULETTE = 32;
 
 }  // namespace
 
@@ -106,8 +106,9 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
 }
 
 /// Chance that a path was followed which brings that much of a pixel's usual light, 0 if it is not. The reference
-/// follows all: in single precision one that brings so little that a picture's samples level out whether it is there goes
-/// on as often as it is bright, and brings as much more (Arvo and Kirk, Particle Transport and Image Synthesis, 1990).
+/// follows all: in single precision one that brings so little that a picture's samples level out whether it is there
+/// goes on as often as it is bright, and brings as much more (Arvo and Kirk, Particle Transport and Image Synthesis,
+/// 1990).
 real Shader::roulette(real brings, const Path& path, uint32_t purpose) const {
     if (is_reference || context_.settings.spp < LEAST_FOR_ROULETTE) return 1;
     const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);

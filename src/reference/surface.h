@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -70,6 +71,16 @@ struct Optics {
     Channel channel_of(int component, Channel carried) const;
 };
 
+/// What a lobe of microfacets reflects of white light (Albedos).
+struct AlbedoMeans {
+    Vec3 dielectric{0};                                ///< share of the dielectric part
+    real normal = 0, grazing = 0;                      ///< a metal's, by what it reflects at normal incidence: `metal`
+    real masking() const { return normal + grazing; }  ///< of a perfect mirror's microfacets
+    /// To the microfacet whose grazing light, as Schlick's formula has it, is the mean.
+    real cosine() const { return 1 - std::pow(grazing / masking(), 0.2); }
+    Vec3 metal(const Vec3& base_color) const { return base_color * normal + grazing; }
+};
+
 /// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
 struct Surface {
     Vec3 position;
@@ -85,6 +96,9 @@ struct Surface {
     Optics optics;        ///< the material here
     real mean_roughness;  ///< of the round lobe that masks the ray that came as much as the material's own
     real curvature;       ///< how much the normal turns per world unit; > 0: the ray meets a bulge
+    /// The last answer of Albedos::at(), which is asked for each light and branch of a hit, and for which cosine.
+    mutable AlbedoMeans means;
+    mutable real means_cosine = -1;
 
     /// Where a ray that goes to `direction`'s side of the surface starts: off its plane by the rounding error, so that
     /// a triangle that coincides with the surface's own is not hit either.
