@@ -3,6 +3,7 @@
 find_program(GLSLC glslc REQUIRED)
 find_program(SPIRV_OPT spirv-opt REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
+option(PEELRAY_OPTIMIZE_SHADERS "OFF: shaders are made in a third of the time, and not meant to run" ON)
 
 # peelray_embed_shaders(TARGET DIR): a static library TARGET with every .comp, .vert, .tesc, .tese, .geom, .frag, .rgen, .rmiss,
 # .rchit and .rahit of DIR and the folders in it.
@@ -16,13 +17,17 @@ function(peelray_embed_shaders target dir)
   foreach(source ${sources})
     get_filename_component(file ${source} NAME)
     set(output ${CMAKE_CURRENT_BINARY_DIR}/${target}/${file}.spv)
+    set(optimize)
+    if(PEELRAY_OPTIMIZE_SHADERS)
+      set(optimize -O)
+    endif()
     add_custom_command(
       OUTPUT ${output}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_CURRENT_BINARY_DIR}/${target}
       # glslc -O would drop the names that reflection finds the bindings by; spirv-opt keeps them.
       COMMAND ${GLSLC} --target-env=vulkan1.3 -O0 -Werror -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include
               -MD -MF ${output}.d -o ${output} ${source}
-      COMMAND ${SPIRV_OPT} --target-env=vulkan1.3 --scalar-block-layout -O ${output} -o ${output}
+      COMMAND ${SPIRV_OPT} --target-env=vulkan1.3 --scalar-block-layout ${optimize} ${output} -o ${output}
       COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${output}
       DEPENDS ${source} DEPFILE ${output}.d
       COMMENT "Shader ${file}" VERBATIM)
