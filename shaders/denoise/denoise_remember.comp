@@ -15,7 +15,7 @@ BUFFER_ALIGNED(writeonly, 4, vec4, past_light)
 BUFFER(writeonly, 5, vec3, past_motion)
 #include "denoise/tile.glsl"
 
-/// The mean luminance around a pixel, and the standard deviation of that mean.
+/// The mean luminance around a pixel, and the standard deviation of that mean: of too few pixels nothing is known, and it has no limit.
 vec2 surroundings(ivec2 p) {
     const Features pixel = unpackFeatures(features[pixelIndex(p)]);
     const int reach = DENOISE_VARIANCE_REACH;
@@ -32,7 +32,8 @@ vec2 surroundings(ivec2 p) {
             mean += from_mean * weight / weights;
             deviations += weight * from_mean * (luminance(signal[pixelIndex(q)].rgb) - mean);
         }
-    return weights > 0.0 ? vec2(mean, sqrt(max(deviations, 0.0) * squares / weights) / weights) : vec2(0);
+    if (weights * weights < float(DENOISE_OUTLIER_WITNESSES) * squares) return vec2(mean, mean * NO_LIMIT);
+    return vec2(mean, sqrt(max(deviations, 0.0) * squares / (weights - squares / weights)) / weights);
 }
 
 void main() {

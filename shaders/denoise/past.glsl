@@ -6,10 +6,13 @@
 #ifndef PEELRAY_DENOISE_PAST_GLSL
 #define PEELRAY_DENOISE_PAST_GLSL
 
+// Times the mean, a deviation that explains any change.
+#define NO_LIMIT 1e4
+
 /// A mean and its standard deviation: as halves, the mean's logarithm, since light has no largest value, and the deviation's share of it.
 uint packSurroundings(vec2 mean_deviation) {
     const float mean = max(mean_deviation.x, 1e-20);
-    return packHalf2x16(vec2(log2(mean), min(mean_deviation.y / mean, 1e4)));
+    return packHalf2x16(vec2(log2(mean), min(mean_deviation.y / mean, NO_LIMIT)));
 }
 
 vec2 unpackSurroundings(uint packed) {

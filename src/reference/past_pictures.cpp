@@ -49,7 +49,10 @@ void PastPictures::keep(int64_t number, uint32_t width, uint32_t height, std::sp
             const double from_mean = luminance(filter.signal(i, j).light) - pixel.around;
             deviations += weight * from_mean * from_mean;
         });
-        pixel.deviation = std::sqrt(deviations / weights * squares) / weights;
+        // Too few pixels tell nothing: then it has no limit.
+        pixel.deviation = weights * weights < DENOISE_OUTLIER_WITNESSES * squares
+                              ? 1e4 * pixel.around
+                              : std::sqrt(deviations * squares / (weights - squares / weights)) / weights;
     });
 }
 

@@ -285,7 +285,7 @@ TEST_F(BothPastsTest, DoTheSame) {
             different += !near;
         }
         EXPECT_GT(followed, gpu.size() / 2);
-        EXPECT_LT(different, gpu.size() / 100);  // a threshold on whose other side rounding is
+        EXPECT_LT(different, gpu.size() / 50);  // a threshold on whose other side rounding is
     }
 }
 
