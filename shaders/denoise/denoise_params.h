@@ -50,6 +50,81 @@ struct DenoiseParams {
 };
 SHARED_SIZE(DenoiseParams, 12);
 
+/// Of a pixel, where the surface that its guide comes from was in the picture of the moment before; of sample 0, whose ray
+/// goes through the pixel's centre.
+struct DenoiseMotion {
+    vec2 motion;  ///< pixels, to the right and down
+    float depth;  ///< length of the path then
+    uint object;  ///< the surface's, or DENOISE_NO_OBJECT: it was nowhere, or there is none
+};
+SHARED_SIZE(DenoiseMotion, 16);
+#define DENOISE_NO_OBJECT 0xffffffffu
+
+/// What the surfaces on a camera ray's way, mirrors and glass, make of a point of the moment before, relative to the eye
+/// then: where the camera saw its image. The way is straightened at each of them, as it stood then.
+struct DenoiseImage {
+    vec3 x, y, z;  ///< columns of the linear part
+    vec3 origin;
+    uint place;  ///< where the way was one level before, in that level's queue
+};
+SHARED_SIZE(DenoiseImage, 52);
+
+/// The camera at the moment before, as in MotionParams, and a level of the tree of rays.
+struct DenoiseMotionParams {
+    vec3 eye;
+    float near;
+    vec3 right;
+    uint orthographic;
+    vec3 up;
+    uint first_moving;  ///< from this vertex on positions change from moment to moment
+    vec3 forward;
+    uint capacity;  ///< level 0's rays
+    vec2 jitter;
+    uint first_row;       ///< of the band, a multiple of 8
+    uint level_capacity;  ///< room in this level's queue
+};
+SHARED_SIZE(DenoiseMotionParams, 80);
+
+/// Of a pixel, how far back its surface has been followed, and what its light was.
+struct DenoiseTrail {
+    vec2 place;   ///< in the next picture to look at, pixels; that of a pixel's centre is its number
+    float depth;  ///< expected there
+    uint normal;  ///< packed, of the picture before
+    vec3 change;  ///< sum of the light less the present one's, weighted
+    float trust;  ///< weight of the last picture that was looked at; 0: the way has ended
+    float weights;
+    float squares;     ///< of the weights, their sum
+    float mean;        ///< of the luminances, weighted,
+    float deviations;  ///< and the sum of their squared deviations from that
+    float variance;    ///< of the sum, where samples tell it; else < 0
+};
+SHARED_SIZE(DenoiseTrail, 52);
+
+// Denoise::temporal: how many moments before the picture's own are rendered and looked at. Each costs 44 bytes a pixel and
+// a picture where a run begins; with six pictures in all a sixth of the variance is left.
+#define DENOISE_WARM_UP 5
+// A picture has the random numbers of its number modulo this: any DENOISE_WARM_UP + 1 in a row differ, and where nothing
+// moves all pictures are the same. Between the seeds of one and the next:
+#define DENOISE_SEEDS (DENOISE_WARM_UP + 1)
+#define DENOISE_SEED_STEP 0x9e3779b9u
+// What was seen then is the same surface if the cosine between the normals is at least this, and the depths differ by at
+// most this share and as the surface rises over as many pixels.
+#define DENOISE_SAME_NORMAL 0.9
+#define DENOISE_SAME_DEPTH 0.02
+#define DENOISE_SAME_RISE 1.5
+// Of the four pixels around a place those that are must have at least this part of the weight.
+#define DENOISE_LEAST_PART 0.1
+// Motions this near to whole pixels are whole: rounding must not blur.
+#define DENOISE_WHOLE_PIXEL (1.0 / 128.0)
+// The light has changed if its mean around differs by more than so many standard deviations; from the second on it is
+// another's. Noise alone gets above the first at one place in twenty.
+#define DENOISE_CHANGE_FIRST 2.0
+#define DENOISE_CHANGE_LAST 4.0
+// Changes below this share of the mean are none.
+#define DENOISE_LEAST_CHANGE 0.01
+// From so many pictures on their own differences tell the variance.
+#define DENOISE_LEAST_HISTORY 4
+
 // The filter's iterations: each has taps twice as far apart as the one before.
 #define DENOISE_ITERATIONS 5
 // Taps on either side in a filter, and of the windows that outliers and variance are looked for in.

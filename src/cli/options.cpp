@@ -151,6 +151,17 @@ bool gives_any(const CLI::App& command, const SettingList& options, bool (*of)(c
     });
 }
 
+std::vector<std::string> with_implied_values(std::vector<std::string> words) {
+    RenderArguments unused;
+    for (const SettingEntry& entry : options_of(unused)) {
+        if (entry.info.implied.empty()) continue;
+        for (auto word = words.begin(); word != words.end(); ++word)
+            if (*word == flag_of(entry.info) && (word + 1 == words.end() || !entry.set(word[1])))
+                word = words.insert(word + 1, entry.info.implied);
+    }
+    return words;
+}
+
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& a) {
     std::vector<GivenOption> given;
     for (const SettingEntry& entry : picture_settings(a, false)) {

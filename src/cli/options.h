@@ -17,6 +17,9 @@ bool gives_any(const CLI::App& command, const SettingList& options, bool (*of)(c
 /// The options of a picture that were given to `compare`: `render` takes them as well.
 std::vector<GivenOption> given_options(const CLI::App& compare, PictureArguments& arguments);
 
+/// The words of a command line, with the values that were left out where an option need not be given one.
+std::vector<std::string> with_implied_values(std::vector<std::string> words);
+
 /// For help pages.
 std::string builtin_list();
 extern const char* const kSceneHelp;

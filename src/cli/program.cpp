@@ -130,7 +130,9 @@ int run_program(int argc, const char* const* argv) {
     const std::vector<Command> commands = add_commands(program, arguments);
 
     try {
-        program.parse(argc, argv);
+        std::vector<std::string> words = with_implied_values({argv + 1, argv + argc});
+        std::reverse(words.begin(), words.end());  // as CLI11 takes them
+        program.parse(words);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {  // help and version
             program.exit(error);

@@ -47,6 +47,12 @@ MadePicture render_with_bar(Workspace& workspace, const RenderSettings& settings
 }
 
 void check_ends(const RenderArguments& a) {
+    const char* ending = a.time_limit ? "--time-limit" : a.noise_target ? "--noise-target" : nullptr;
+    if (a.denoise == Denoise::temporal && ending)
+        fail(
+            "{} lets pictures end with fewer samples, and --denoise temporal takes the mean of several that are alike: "
+            "leave one of them out",
+            ending);
     if (a.noise_target && a.spp < kLeastSamplesForNoise)
         fail(
             "of {} noise cannot be told, so --noise-target would end nothing: let --spp, the most there may be, be {} "

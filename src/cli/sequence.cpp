@@ -33,10 +33,8 @@ Shot Sequence::shot(uint32_t frame) const {
     Shot shot;
     if (runs) shot.time = frame / fps;
     shot.fps = runs ? fps : 0;
-    if (turntable > 0) {
-        shot.turn = double(frame) / turntable;
-        shot.turn_before = (double(frame) - 1) / turntable;
-    }
+    shot.number = frame;
+    shot.turntable = turntable;
     return shot;
 }
 
@@ -71,10 +69,11 @@ void check_single(const RenderArguments& a) {
     if (has_frame_number(a.output))
         fail("'{}' has a place for a frame's number: say which frames with --frames A:B or --turntable N",
              a.output.string());
-    const bool motion_at_fps = s.fps && wants(a, Aov::motion);
-    const char* option = s.fps && !motion_at_fps ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
+    const bool looks_back = wants(a, Aov::motion) || a.denoise == Denoise::temporal;
+    const char* option = s.fps && !looks_back ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
     if (option)
-        fail("{} is for several frames: add --frames A:B or --turntable N{}", option, s.fps ? ", or --aov motion" : "");
+        fail("{} is for several frames: add --frames A:B or --turntable N{}", option,
+             s.fps ? ", or --aov motion or --denoise temporal" : "");
 }
 
 }  // namespace peelray

@@ -97,7 +97,7 @@ void Run::count(uint32_t frame, MadePicture& made) {
 Json Run::frame_json(const Frame& frame) const {
     const std::optional<double> time = frame.shot.time ? frame.shot.time : scene().time();
     Json json = {{"frame", frame.number}, {"time", time ? Json(*time) : Json(nullptr)}};
-    if (sequence_.turntable > 0) json["turn_degrees"] = frame.shot.turn * 360;
+    if (sequence_.turntable > 0) json["turn_degrees"] = frame.shot.turn() * 360;
     json.update(picture_json(frame.stats));
     return json;
 }

@@ -2,116 +2,79 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
-#include <vector>
 
 #include "base/parallel.h"
+#include "reference/denoise_filter.h"
 #include "reference/optics.h"
 
 namespace peelray {
 
 using optics::luminance;
 
-namespace {
+DenoiseFilter::DenoiseFilter(uint32_t width, uint32_t height, std::span<const DenoiseGuide> guides)
+    : width_(int(width)), height_(int(height)), guides_(guides), features_(guides.size()), signal_(guides.size()) {
+    for_all([&](int x, int y) { prepare(x, y); });
+    first_ = signal_;
+}
 
-/// What a pixel shows.
-struct Features {
-    bool filtered = false;
-    glm::dvec3 normal{0};
-    double depth = 0;
-    glm::dvec2 slope{0};  ///< of the depth, to the right and down
-    double gloss = 0, albedo = 0;
-};
+void DenoiseFilter::for_all(const std::function<void(int, int)>& body) const {
+    parallel_for(size_t(height_), 1, [&](size_t y) {
+        for (int x = 0; x < width_; x++) body(x, int(y));
+    });
+}
 
-/// Light over albedo, and the variance of its luminance; below 0: not known.
-struct Signal {
-    glm::dvec3 light{0};
-    double variance = -1;
-};
+void DenoiseFilter::replace(const std::function<Signal(int, int)>& made) {
+    std::vector<Signal> next(signal_.size());
+    for_all([&](int x, int y) { next[index(x, y)] = made(x, y); });
+    signal_ = std::move(next);
+}
 
-/// A picture in the denoiser.
-class Filter {
-  public:
-    Filter(uint32_t width, uint32_t height, std::span<const DenoiseGuide> guides)
-        : width_(int(width)), height_(int(height)), guides_(guides), features_(guides.size()), signal_(guides.size()) {
-        for_all([&](int x, int y) { prepare(x, y); });
-        first_ = signal_;
+void DenoiseFilter::limit_outliers() {
+    replace([&](int x, int y) { return within_limits(x, y); });
+}
+
+void DenoiseFilter::estimate_variance(bool one_sample, bool of_several) {
+    replace([&](int x, int y) {
+        Signal s = signal(x, y);
+        const double pictures = of_several ? -s.variance : 1;
+        const bool known = of_several ? s.variance >= 0 : !one_sample;
+        s.variance = 0;
+        if (features(x, y).filtered)
+            s.variance = known        ? variance_of_samples(x, y)
+                         : of_several ? variance_of_neighbours(x, y, first_) / pictures
+                                      : variance_of_neighbours(x, y, signal_);
+        return s;
+    });
+}
+
+void DenoiseFilter::iterate(int step) {
+    replace([&](int x, int y) { return filtered(x, y, step); });
+}
+
+void DenoiseFilter::apply(std::span<glm::dvec4> sums) const {
+    for (size_t i = 0; i < sums.size(); i++) {
+        if (!features_[i].filtered) continue;
+        const glm::dvec3 change = (signal_[i].light - first_[i].light) * glm::dvec3(guides_[i].albedo);
+        sums[i] = glm::dvec4(glm::max(glm::dvec3(sums[i]) + change, glm::dvec3(0)), sums[i].w);
     }
+}
 
-    void limit_outliers() {
-        replace([&](int x, int y) { return within_limits(x, y); });
-    }
-    void estimate_variance(bool one_sample) {
-        replace([&](int x, int y) {
-            Signal s = signal(x, y);
-            s.variance = 0;
-            if (features(x, y).filtered)
-                s.variance = one_sample ? variance_of_neighbours(x, y) : variance_of_samples(x, y);
-            return s;
-        });
-    }
-    void iterate(int step) {
-        replace([&](int x, int y) { return filtered(x, y, step); });
-    }
-    void apply(std::span<glm::dvec4> sums) const {
-        for (size_t i = 0; i < sums.size(); i++) {
-            if (!features_[i].filtered) continue;
-            const glm::dvec3 change = (signal_[i].light - first_[i].light) * glm::dvec3(guides_[i].albedo);
-            sums[i] = glm::dvec4(glm::max(glm::dvec3(sums[i]) + change, glm::dvec3(0)), sums[i].w);
-        }
-    }
-
-  private:
-    bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-    size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
-    const Features& features(int x, int y) const { return features_[index(x, y)]; }
-    const Signal& signal(int x, int y) const { return signal_[index(x, y)]; }
-
-    void for_all(const std::function<void(int, int)>& body) const {
-        parallel_for(size_t(height_), 1, [&](size_t y) {
-            for (int x = 0; x < width_; x++) body(x, int(y));
-        });
-    }
-    void replace(const std::function<Signal(int, int)>& made) {
-        std::vector<Signal> next(signal_.size());
-        for_all([&](int x, int y) { next[index(x, y)] = made(x, y); });
-        signal_ = std::move(next);
-    }
-
-    void prepare(int x, int y);
-    double depth(int x, int y) const;
-    double slope(int x, int y, int dx, int dy) const;
-    double likeness(const Features& pixel, int x, int y, int dx, int dy) const;
-    template <typename Body>
-    void for_alike(int x, int y, int reach, Body body) const;
-    Signal within_limits(int x, int y) const;
-    double variance_of_samples(int x, int y) const;
-    double variance_of_neighbours(int x, int y) const;
-    double smooth_variance(int x, int y) const;
-    Signal filtered(int x, int y, int step) const;
-
-    int width_, height_;
-    std::span<const DenoiseGuide> guides_;
-    std::vector<Features> features_;
-    std::vector<Signal> signal_, first_;
-};
-
-double Filter::depth(int x, int y) const {
+double DenoiseFilter::depth(int x, int y) const {
     if (!inside(x, y)) return 0;
     const DenoiseGuide& guide = guides_[index(x, y)];
     return guide.surfaces > 0 ? double(guide.depth) / guide.surfaces : 0;
 }
 
 /// Of both sides the flatter slope: the other may be beyond an edge.
-double Filter::slope(int x, int y, int dx, int dy) const {
+double DenoiseFilter::slope(int x, int y, int dx, int dy) const {
     const double here = depth(x, y), before = depth(x - dx, y - dy), after = depth(x + dx, y + dy);
     if (!(before > 0)) return after > 0 ? after - here : 0;
     if (!(after > 0)) return here - before;
     return std::abs(after - here) < std::abs(here - before) ? after - here : here - before;
 }
 
-void Filter::prepare(int x, int y) {
+void DenoiseFilter::prepare(int x, int y) {
     const DenoiseGuide& guide = guides_[index(x, y)];
     const glm::dvec3 albedo(guide.albedo), normal(guide.normal);
     const double n = guide.surfaces;
@@ -129,7 +92,7 @@ void Filter::prepare(int x, int y) {
 }
 
 /// The weight of a tap by its guides, in [0, 1]; 0: it is none.
-double Filter::likeness(const Features& pixel, int x, int y, int dx, int dy) const {
+double DenoiseFilter::likeness(const Features& pixel, int x, int y, int dx, int dy) const {
     if (!inside(x + dx, y + dy)) return 0;
     const Features& tap = features(x + dx, y + dy);
     if (!tap.filtered) return 0;
@@ -141,22 +104,13 @@ double Filter::likeness(const Features& pixel, int x, int y, int dx, int dy) con
                     DENOISE_ALBEDO_FALL * std::abs(tap.albedo - pixel.albedo));
 }
 
-/// body(weight, signal) for what is like the pixel around it, itself included.
-template <typename Body>
-void Filter::for_alike(int x, int y, int reach, Body body) const {
-    const Features& pixel = features(x, y);
-    for (int dy = -reach; dy <= reach; dy++)
-        for (int dx = -reach; dx <= reach; dx++)
-            if (const double weight = likeness(pixel, x, y, dx, dy); weight > 0) body(weight, signal(x + dx, y + dy));
-}
-
-Signal Filter::within_limits(int x, int y) const {
+DenoiseFilter::Signal DenoiseFilter::within_limits(int x, int y) const {
     Signal s = signal(x, y);
     const double lit = luminance(s.light);
     if (!features(x, y).filtered || lit <= 0) return s;
     std::vector<double> others;
-    for_alike(x, y, DENOISE_OUTLIER_REACH, [&](double weight, const Signal& other) {
-        if (&other != &signal(x, y) && weight >= DENOISE_SAME) others.push_back(luminance(other.light));
+    for_alike(x, y, DENOISE_OUTLIER_REACH, [&](double weight, int i, int j) {
+        if ((i != x || j != y) && weight >= DENOISE_SAME) others.push_back(luminance(signal(i, j).light));
     });
     if (others.size() < DENOISE_OUTLIER_WITNESSES) return s;
     double mean = 0, squares = 0;
@@ -171,25 +125,26 @@ Signal Filter::within_limits(int x, int y) const {
     return s;
 }
 
-double Filter::variance_of_samples(int x, int y) const {
+double DenoiseFilter::variance_of_samples(int x, int y) const {
     double weights = 0, sum = 0;
-    for_alike(x, y, DENOISE_VARIANCE_REACH, [&](double weight, const Signal& other) {
-        if (other.variance < 0) return;
+    for_alike(x, y, DENOISE_VARIANCE_REACH, [&](double weight, int i, int j) {
+        if (signal(i, j).variance < 0) return;
         weights += weight;
-        sum += weight * other.variance;
+        sum += weight * signal(i, j).variance;
     });
     return weights > 0 ? sum / weights : 0;
 }
 
 /// By the differences of neighbours, which have twice the variance.
-double Filter::variance_of_neighbours(int x, int y) const {
+double DenoiseFilter::variance_of_neighbours(int x, int y, const std::vector<Signal>& light) const {
     constexpr int reach = DENOISE_VARIANCE_REACH;
     const Features& pixel = features(x, y);
     double weights = 0, sum = 0;
     const auto pair = [&](int dx, int dy, int ex, int ey) {
         const double weight = likeness(pixel, x, y, dx, dy) * likeness(pixel, x, y, ex, ey);
         if (weight == 0) return;
-        const double difference = luminance(signal(x + dx, y + dy).light) - luminance(signal(x + ex, y + ey).light);
+        const double difference =
+            luminance(light[index(x + dx, y + dy)].light) - luminance(light[index(x + ex, y + ey)].light);
         weights += weight;
         sum += weight * difference * difference;
     };
@@ -201,7 +156,7 @@ double Filter::variance_of_neighbours(int x, int y) const {
     return weights > 0 ? sum / weights / 2 : 0;
 }
 
-double Filter::smooth_variance(int x, int y) const {
+double DenoiseFilter::smooth_variance(int x, int y) const {
     double weights = 0, sum = 0;
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++) {
@@ -213,7 +168,7 @@ double Filter::smooth_variance(int x, int y) const {
     return sum / weights;
 }
 
-Signal Filter::filtered(int x, int y, int step) const {
+DenoiseFilter::Signal DenoiseFilter::filtered(int x, int y, int step) const {
     const Signal s = signal(x, y);
     const Features& pixel = features(x, y);
     if (!pixel.filtered) return s;
@@ -237,13 +192,21 @@ Signal Filter::filtered(int x, int y, int step) const {
     return {s.light + change / weights, spread / (weights * weights)};
 }
 
-}  // namespace
-
 void denoise(uint32_t width, uint32_t height, bool one_sample, std::span<const DenoiseGuide> guides,
              std::span<glm::dvec4> sums) {
-    Filter filter(width, height, guides);
+    DenoiseFilter filter(width, height, guides);
     filter.limit_outliers();
-    filter.estimate_variance(one_sample);
+    filter.estimate_variance(one_sample, false);
+    for (int i = 0; i < DENOISE_ITERATIONS; i++) filter.iterate(1 << i);
+    filter.apply(sums);
+}
+
+void denoise(uint32_t width, uint32_t height, std::span<const DenoiseGuide> guides, int64_t number,
+             const PastPictures& past, std::span<glm::dvec4> sums) {
+    DenoiseFilter filter(width, height, guides);
+    filter.take(past.mean(filter, number));
+    filter.limit_outliers();
+    filter.estimate_variance(false, true);
     for (int i = 0; i < DENOISE_ITERATIONS; i++) filter.iterate(1 << i);
     filter.apply(sums);
 }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "denoise/denoise_params.h"
+#include "reference/past_pictures.h"
 
 namespace peelray {
 
@@ -14,5 +15,9 @@ namespace peelray {
 /// on how many there are.
 void denoise(uint32_t width, uint32_t height, bool one_sample, std::span<const DenoiseGuide> guides,
              std::span<glm::dvec4> sums);
+
+/// The same after taking the mean of the picture `number`, which is kept in `past`, and those before it.
+void denoise(uint32_t width, uint32_t height, std::span<const DenoiseGuide> guides, int64_t number,
+             const PastPictures& past, std::span<glm::dvec4> sums);
 
 }  // namespace peelray

@@ -37,6 +37,23 @@ std::optional<uint32_t> Shader::guiding_branch(const Surface& surface, const Pat
     return first >= second ? 0 : 1;
 }
 
+/// Where the hit of a guided path was before, or where the path goes on: what that makes of images.
+void Shader::look_back(const Path& path, const Hit& hit, std::optional<uint32_t> guiding, const Scattered& out) {
+    if (path.level == 0) {
+        camera_origin_ = path.origin;
+        camera_direction_ = path.direction;
+    }
+    const MomentBefore::Place place{hit.triangle, hit.u, hit.v};
+    if (guiding) {
+        const Branch& branch = *guiding == 0 ? out.reflection : out.refraction;
+        image_ = context_.before->straightened(image_, place, glm::dvec3(path.direction), glm::dvec3(branch.direction));
+        return;
+    }
+    std::optional<glm::dvec3> seen;
+    if (path.level > 0) seen = glm::dvec3(camera_origin_) + double(path.length) * glm::dvec3(camera_direction_);
+    guide_motion_ = context_.before->motion_of_image(place, image_, seen);
+}
+
 /// The guides of a hit; `all`: its light, `second`: of that what its second
 /// branch shows, `lit`: of lamps and the sky.
 void Shader::guide(const Surface& surface, const Path& path, const Vec3& all, const Vec3& second, const Vec3& lit) {

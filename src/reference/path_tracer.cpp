@@ -30,9 +30,10 @@ PathTracer::PathTracer(const Scene& scene, const Moment& moment, const Geometry&
 
 PathTracer::~PathTracer() = default;
 
-Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const {
+Picture PathTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
+                           PastPictures* past) const {
     check_settings(settings);
-    return impl_->render(settings, watch, threads);
+    return impl_->render(settings, watch, threads, past);
 }
 
 std::string PathTracer::version() {

@@ -12,6 +12,8 @@
 
 namespace peelray {
 
+class PastPictures;
+
 /// `double_`: hits are the oracle's (Embree 3 finds candidates, double precision decides), and all shading is in double
 /// precision. `single_`: hits are Embree's own, and all is in single precision.
 enum class Precision { double_, single_ };
@@ -29,8 +31,10 @@ class PathTracer {
     /// `threads`: 0 for all cores. The picture does not depend on it. Progress receives the share done from the calling
     /// thread only, as all of `watch` is called; if it throws, all threads stop and the exception goes on.
     /// EnvironmentMode::sampled needs Environment::distribution. Throws Error for impossible settings, naming the
-    /// option.
-    Picture render(const PictureSettings& settings, const PictureWatch& watch = {}, unsigned threads = 0) const;
+    /// option. With Denoise::temporal the picture is kept in `past` and those before it are looked for there; null: it
+    /// has none.
+    Picture render(const PictureSettings& settings, const PictureWatch& watch = {}, unsigned threads = 0,
+                   PastPictures* past = nullptr) const;
 
     /// "Embree 3.13.5"
     static std::string version();

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <thread>
 
+#include "reference/moment_before.h"
 #include "reference/optics.h"
 #include "reference/sample_sums.h"
 #include "reference/shader.h"
@@ -44,40 +45,10 @@ Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x,
     return path;
 }
 
-/// Where a point is in the picture that a camera sees, pixels from its middle, right and up.
-Vec2 place_in_picture(const View& view, const PictureSettings& s, const Vec3& point) {
-    const Vec3 p = point - Vec3(view.eye), right(view.right), up(view.up);
-    Vec2 place(glm::dot(p, right) / glm::dot(right, right), glm::dot(p, up) / glm::dot(up, up));
-    if (!view.orthographic) place /= glm::dot(p, Vec3(view.forward));
-    return 0.5 * place * Vec2(s.width, s.height);
-}
-
-/// The scene and its camera at the moment before.
-struct Before {
-    View view;
-    Geometry geometry;
-
-    /// Aovs::motion of a hit of the triangles as they are now.
-    glm::vec2 motion(const Geometry& geometry_now, const Hit& hit, const View& view_now,
-                     const PictureSettings& s) const {
-        // As they are in order now: of a triangle that has been turned over since, the second and third were the
-        // other way round.
-        const glm::uvec3 corners = geometry_now.triangles[hit.triangle];
-        const auto point = [&](const Geometry& g) {
-            const Vec3 a = g.positions[corners.x], b = g.positions[corners.y], c = g.positions[corners.z];
-            return a + hit.u * (b - a) + hit.v * (c - a);
-        };
-        const Vec3 p = point(geometry);
-        const Vec3 ahead = p - Vec3(view.eye);
-        if (!view.orthographic && !(glm::dot(ahead, Vec3(view.forward)) > real(view.near))) return glm::vec2(0);
-        return place_in_picture(view, s, p) - place_in_picture(view_now, s, point(geometry_now));
-    }
-};
-
-/// What the camera sees through, now and, for Aovs::motion, at the moment before.
+/// What the camera sees through, now and, for Aovs::motion and Denoise::temporal, at the moment before.
 struct Views {
     View now;
-    std::optional<Before> before;
+    std::optional<MomentBefore> before;
 };
 
 void prepare_aovs(Picture& picture, const PictureSettings& s) {
@@ -154,8 +125,6 @@ struct PictureTracer : PathTracer::Impl {
         return draws_image(s) ? endless : real(environment.rough_limit);
     }
     Views views(const PictureSettings& s, const Box& box) const;
-    /// Numbers as Geometry::objects does.
-    uint32_t object_of(uint32_t triangle) const;
     void aovs(Picture& picture, size_t at, const Shader::Path& path, const Hit& hit, const Box& box) const;
     void pixel(const Work& work, const RenderContext& context, const Views& views, uint32_t x, uint32_t y,
                RayCounts& rays) const;
@@ -163,21 +132,17 @@ struct PictureTracer : PathTracer::Impl {
                    const std::function<void(double)>& progress) const;
     void pass(const Work& work, const RenderContext& context, const Views& views,
               const std::function<void(double)>& progress, unsigned threads) const;
-    Picture render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const override;
+    Picture render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
+                   PastPictures* past) const override;
 };
 
 Views PictureTracer::views(const PictureSettings& s, const Box& box) const {
     const float aspect = float(s.width) / float(s.height);
     Views views{make_view(s.camera, aspect, box.lower, box.upper), {}};
-    if (s.aovs && s.motion)
-        views.before = Before{make_view(s.camera_before, aspect, box.lower, box.upper),
-                              s.moment_before ? flatten(scene, *s.moment_before) : geometry};
+    if ((s.aovs && s.motion) || is_temporal(s))
+        views.before.emplace(geometry, s.moment_before ? flatten(scene, *s.moment_before) : geometry, views.now,
+                             make_view(s.camera_before, aspect, box.lower, box.upper), s);
     return views;
-}
-
-uint32_t PictureTracer::object_of(uint32_t triangle) const {
-    const auto after = std::ranges::upper_bound(geometry.objects, triangle, {}, &Geometry::Object::first);
-    return uint32_t(after - geometry.objects.begin()) - 1;
 }
 
 void PictureTracer::aovs(Picture& picture, size_t at, const Shader::Path& path, const Hit& hit, const Box& box) const {
@@ -185,7 +150,7 @@ void PictureTracer::aovs(Picture& picture, size_t at, const Shader::Path& path, 
     Aovs& a = picture.aovs;
     a.depth[at] = float(hit.t);
     a.triangle[at] = float(hit.triangle);
-    a.instance[at] = float(object_of(hit.triangle));
+    a.instance[at] = float(object_of(geometry, hit.triangle));
     a.material[at] = float(s.material);
     a.normal[at] = glm::vec4(s.normal, 0);
     a.albedo[at] = glm::vec4(s.optics.base_color, 1);
@@ -208,7 +173,7 @@ void PictureTracer::pixel(const Work& work, const RenderContext& context, const 
     for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
         Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
         path.media = context.start;
-        path.guided = s.denoise;
+        path.guided = is_denoised(s);
         Shader shader(context, {sample, sample_bits, s.seed});
         const Meeting meeting = shader.hit(path);
         const Hit& hit = meeting.hit;
@@ -216,11 +181,11 @@ void PictureTracer::pixel(const Work& work, const RenderContext& context, const 
         const real alpha =
             s.backdrop.is_transparent() ? 1 - std::min(shader.through(), 1.0) : hit.hit() && !shader.catches();
         work.sums.add(at, sample, Vec4(radiance, alpha), shader.unlit());
-        if (s.denoise) work.sums.add_guide(at, shader.guide());
+        if (path.guided) work.sums.add_guide(at, sample, shader.guide(), shader.guide_motion());
         if (s.aovs && sample == 0 && hit.hit()) {
             const Hit first = triangles.nearest({path.origin, 0, path.direction, endless}, Shader::none);
             aovs(picture, at, path, first, context.box);
-            if (views.before) picture.aovs.motion[at] = views.before->motion(geometry, first, views.now, s);
+            if (s.motion) picture.aovs.motion[at] = views.before->motion({first.triangle, first.u, first.v});
         }
         rays += shader.rays();
     }
@@ -285,7 +250,8 @@ void PictureTracer::pass(const Work& work, const RenderContext& context, const V
     if (failure) std::rethrow_exception(failure);
 }
 
-Picture PictureTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const {
+Picture PictureTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
+                              PastPictures* past) const {
     assert(settings.env_mode != EnvironmentMode::sampled || !environment.distribution.quads.empty());
     const Box box = settings.bounds.value_or(Box{geometry.lower, geometry.upper});
     const Views seen = views(settings, box);
@@ -302,10 +268,11 @@ Picture PictureTracer::render(const PictureSettings& settings, const PictureWatc
                                 settings,
                                 box,
                                 media_around(settings.camera),
-                                has_blended};
+                                has_blended,
+                                is_temporal(settings) ? &*seen.before : nullptr};
     Picture picture;
     prepare_aovs(picture, settings);
-    SampleSums sums(settings, has_unlit);
+    SampleSums sums(settings, has_unlit, past);
     Passes passes(settings, watch);
     std::function<void(double)> progress;
     if (watch.progress) progress = [&](double of_pass) { watch.progress(passes.share(of_pass)); };

@@ -8,7 +8,8 @@ namespace peelray {
 
 struct PathTracer::Impl {
     virtual ~Impl() = default;
-    virtual Picture render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads) const = 0;
+    virtual Picture render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
+                           PastPictures* past) const = 0;
 };
 
 inline namespace PRECISION {

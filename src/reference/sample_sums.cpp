@@ -9,11 +9,12 @@
 
 namespace peelray {
 
-SampleSums::SampleSums(const PictureSettings& settings, bool has_unlit)
-    : settings_(settings), sums_(size_t(settings.width) * settings.height, glm::dvec4(0)) {
+SampleSums::SampleSums(const PictureSettings& settings, bool has_unlit, PastPictures* past)
+    : settings_(settings), sums_(size_t(settings.width) * settings.height, glm::dvec4(0)), past_(past) {
     if (has_unlit) unlit_.assign(sums_.size(), glm::dvec3(0));
     if (settings.moments) moments_.resize(sums_.size());
-    if (settings.denoise && draws_at_random(settings)) guides_.resize(sums_.size());
+    if (is_denoised(settings)) guides_.resize(sums_.size());
+    if (is_temporal(settings)) motions_.resize(sums_.size(), {glm::vec2(0), 0, DENOISE_NO_OBJECT});
 }
 
 void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec4& covered, const glm::dvec3& unlit) {
@@ -34,7 +35,8 @@ void SampleSums::add(size_t pixel, uint32_t index, const glm::dvec4& covered, co
     moments.deviations += before * (luminance - moments.mean);
 }
 
-void SampleSums::add_guide(size_t pixel, DenoiseGuide guide) {
+void SampleSums::add_guide(size_t pixel, uint32_t index, DenoiseGuide guide, const DenoiseMotion& motion) {
+    if (index == 0 && !motions_.empty()) motions_[pixel] = motion;
     if (guides_.empty() || guide.surfaces == 0) return;
     const float largest = std::max({guide.light.x, guide.light.y, guide.light.z});
     if (settings_.clamp && largest > *settings_.clamp) {
@@ -53,6 +55,14 @@ void SampleSums::add_guide(size_t pixel, DenoiseGuide guide) {
     sums.deviations += before * (guide.mean - sums.mean);
 }
 
+void SampleSums::denoise_pixels(uint32_t samples, std::vector<glm::dvec4>& pixels) const {
+    if (motions_.empty()) return denoise(settings_.width, settings_.height, samples == 1, guides_, pixels);
+    PastPictures none;
+    PastPictures& past = past_ ? *past_ : none;
+    past.keep(settings_.number, settings_.width, settings_.height, guides_, motions_);
+    denoise(settings_.width, settings_.height, guides_, settings_.number, past, pixels);
+}
+
 void SampleSums::store(Picture& picture, uint32_t samples, bool finished) const {
     picture.width = settings_.width;
     picture.height = settings_.height;
@@ -60,7 +70,7 @@ void SampleSums::store(Picture& picture, uint32_t samples, bool finished) const 
     picture.radiance.resize(sums_.size());
     picture.encoded.resize(sums_.size());
     std::vector<glm::dvec4> pixels = sums_;
-    if (finished && !guides_.empty()) denoise(settings_.width, settings_.height, samples == 1, guides_, pixels);
+    if (finished && !guides_.empty()) denoise_pixels(samples, pixels);
     constexpr size_t kGrain = 1024;  // encoding a pixel takes some 100 ns
     parallel_for(pixels.size(), kGrain, [&](size_t i) {
         const glm::dvec4 mean = pixels[i] / double(samples);

@@ -46,6 +46,7 @@ Vec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
         unlit_ = kept * (sum + (on.traced ? Vec3(0) : untraced(on, path)));
     }
     const std::optional<uint32_t> guiding = guiding_branch(surface, path, scattered);
+    if (context_.before && path.guided) look_back(path, meeting.hit, guiding, scattered);
     // The reference goes on in all of them; the GPU's rays do not.
     if (path.level > 0) rays_.crowded += meeting.behind.kinds() > std::max<size_t>(MEDIA_TOGETHER, path.media.kinds());
     if (scattered.reflection.traced) rays_.reflection++;

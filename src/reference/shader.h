@@ -10,6 +10,7 @@
 #include "reference/emitter_list.h"
 #include "reference/intersections.h"
 #include "reference/media.h"
+#include "reference/moment_before.h"
 #include "reference/optics.h"
 #include "reference/random_numbers.h"
 #include "reference/surface.h"
@@ -35,6 +36,7 @@ struct RenderContext {
     Box box;      ///< of the scene
     Media start;  ///< what the camera is in
     bool has_blended;
+    const MomentBefore* before;  ///< null: guides need no motion
 
     bool sampled() const { return is_sampled(settings); }
     /// Is one lamp with a place drawn for all of them?
@@ -98,6 +100,8 @@ class Shader {
     bool catches() const { return catches_; }
     /// Of a guided camera ray; `surfaces` is 0 where there are none.
     const DenoiseGuide& guide() const { return guide_; }
+    /// Where what it comes from was, with RenderContext::before.
+    const DenoiseMotion& guide_motion() const { return guide_motion_; }
 
   private:
     struct Branch {
@@ -180,6 +184,7 @@ class Shader {
     Vec3 follow(const Branch& branch, const Surface& surface, const Path& path, uint32_t triangle, uint32_t which,
                 bool guided = false);
     std::optional<uint32_t> guiding_branch(const Surface& surface, const Path& path, const Scattered& out) const;
+    void look_back(const Path& path, const Hit& hit, std::optional<uint32_t> guiding, const Scattered& out);
     void guide(const Surface& surface, const Path& path, const Vec3& all, const Vec3& second, const Vec3& lit);
 
     real roulette(real brings, const Path& path, uint32_t purpose) const;
@@ -255,6 +260,9 @@ class Shader {
     real through_ = 0;
     bool catches_ = false;
     DenoiseGuide guide_{};
+    DenoiseMotion guide_motion_{glm::vec2(0), 0, DENOISE_NO_OBJECT};
+    PastImage image_;                              ///< of the guided path so far
+    Vec3 camera_origin_{0}, camera_direction_{0};  ///< of the camera ray
 };
 
 }  // namespace peelray::inline PRECISION

@@ -17,6 +17,7 @@ void AovPictures::render(FrameState& f, Aovs& aovs) {
             setting::size);
     const MemoryPart part(device, "images");
     ensure_size(device, buffer_, "auxiliary pictures", pixels * sizeof(AovSurface));
+    if (settings.motion) motion_.prepare(f);
     f.commands.fill(f.queues.counters(), 0);
     f.view.record(f.commands, f.scene, f.queues, 0);  // it found room before
     for (uint32_t row = 0; row < settings.height; row += f.bands.rows()) {

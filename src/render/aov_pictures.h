@@ -8,9 +8,8 @@ namespace peelray {
 class AovPictures {
   public:
     /// Renders those of Aovs up to `motion`, at the pixels' centres, after the picture itself. For `motion` itself
-    /// motion().look_back() comes before the picture.
+    /// FrameState::before must know the moment before.
     void render(FrameState& f, Aovs& aovs);
-    MotionPicture& motion() { return motion_; }
     /// And those that follow, from what render() left on the device; `box`: of the scene.
     void render_ray_setup(FrameState& f, const Box& box, Aovs& aovs);
 

@@ -7,14 +7,6 @@
 #include "render/frame_state.h"
 
 namespace peelray {
-namespace {
-
-Groups tiles_of(const PictureSettings& settings) {
-    return groups_for(uint64_t((settings.width + 7) / 8) * ((settings.height + 7) / 8), 1);
-}
-
-}  // namespace
-
 void Denoiser::prepare(const PictureSettings& settings) {
     const MemoryPart part(device_, "images");
     const uint64_t pixels = pixels_of(settings);
@@ -22,16 +14,23 @@ void Denoiser::prepare(const PictureSettings& settings) {
     ensure_size(device_, features_, "features of the denoiser", pixels * sizeof(glm::uvec4));
     for (Buffer* signal : {&first_, &one_, &two_})
         ensure_size(device_, *signal, "light in the denoiser", pixels * sizeof(glm::vec4));
+    if (!is_temporal(settings)) past_.reset();
+    if (is_temporal(settings) && !past_) past_ = std::make_unique<PastFrames>(device_);
+    if (past_) past_->prepare(settings);
 }
 
 uint64_t Denoiser::bytes() const {
-    return guides_.bytes() + links_.bytes() + features_.bytes() + first_.bytes() + one_.bytes() + two_.bytes();
+    return guides_.bytes() + links_.bytes() + features_.bytes() + first_.bytes() + one_.bytes() + two_.bytes() +
+           (past_ ? past_->bytes() : 0);
 }
 
 void Denoiser::record_guides(FrameState& f, uint32_t sample, uint32_t first_row) {
     ensure_size(device_, links_, "links of the denoiser",
                 std::max<uint64_t>(links_.bytes(), uint64_t(f.bands.most_pixels()) * sizeof(DenoiseLink)));
-    for (uint32_t level = 0; level <= f.last_level; level++) record_level(f, level, sample, first_row);
+    for (uint32_t level = 0; level <= f.last_level; level++) {
+        if (past_ && sample == 0) past_->record_motion(f, level, first_row, links_);
+        record_level(f, level, sample, first_row);
+    }
 }
 
 void Denoiser::record_level(FrameState& f, uint32_t level, uint32_t sample, uint32_t first_row) {
@@ -68,17 +67,34 @@ void Denoiser::record_level(FrameState& f, uint32_t level, uint32_t sample, uint
                    p, groups_for(p.capacity, 64));
 }
 
+void Denoiser::record_preparation(Commands& commands, const PictureSettings& settings) {
+    commands.run(device_.pass("denoise_prepare"),
+                 {{"denoise_guides", guides_}, {"features", features_}, {"signal", first_}},
+                 DenoiseParams{settings.width, settings.height, 1}, groups_for(pixels_of(settings), 64));
+    if (past_) past_->record_memory(commands, settings, features_, first_);
+}
+
+void Denoiser::record_memory(Commands& commands, const PictureSettings& settings) {
+    commands.begin_group("denoise");
+    record_preparation(commands, settings);
+    commands.end_group();
+}
+
 void Denoiser::record_filter(Commands& commands, const Buffer& picture, const PictureSettings& settings) {
     DenoiseParams p{settings.width, settings.height, 1};
-    commands.begin_group("denoise");
-    commands.run(device_.pass("denoise_prepare"),
-                 {{"denoise_guides", guides_}, {"features", features_}, {"signal", first_}}, p,
-                 groups_for(pixels_of(settings), 64));
     const Groups tiles = tiles_of(settings);
+    commands.begin_group("denoise");
+    record_preparation(commands, settings);
+    if (past_) past_->record_mean(commands, settings, features_, first_, two_);
     commands.run(device_.pass("denoise_outliers"),
-                 {{"features", features_}, {"signal", first_}, {"filtered_signal", one_}}, p, tiles);
-    commands.run(device_.pass("denoise_variance", {{"one_sample", settings.spp == 1}}),
-                 {{"features", features_}, {"signal", one_}, {"filtered_signal", two_}}, p, tiles);
+                 {{"features", features_}, {"signal", past_ ? two_ : first_}, {"filtered_signal", one_}}, p, tiles);
+    if (past_)
+        commands.run(device_.pass("denoise_variance_past"),
+                     {{"features", features_}, {"signal", one_}, {"filtered_signal", two_}, {"first_signal", first_}},
+                     p, tiles);
+    else
+        commands.run(device_.pass("denoise_variance", {{"one_sample", settings.spp == 1}}),
+                     {{"features", features_}, {"signal", one_}, {"filtered_signal", two_}}, p, tiles);
     const Buffer *from = &two_, *to = &one_;
     for (uint32_t i = 0; i < DENOISE_ITERATIONS; i++, p.step *= 2, std::swap(from, to))
         commands.run(device_.pass("denoise_filter", {{"last", i + 1 == DENOISE_ITERATIONS}}),

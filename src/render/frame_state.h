@@ -8,6 +8,7 @@
 #include "render/camera_view.h"
 #include "render/cost_counter.h"
 #include "render/cube_maps.h"
+#include "render/moment_before.h"
 #include "render/tracers/ray_tracer.h"
 
 namespace peelray {
@@ -23,6 +24,7 @@ struct FrameState {
     std::unique_ptr<CostCounter> counter;  ///< null: nothing is counted
 
     // Of the picture that is being made:
+    MomentBefore before;  ///< where it is asked for
     RenderSettings settings;
     Frame constants{};
     Bands bands;

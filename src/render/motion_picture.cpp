@@ -2,37 +2,13 @@
 
 namespace peelray {
 
-void MotionPicture::look_back(FrameState& f, const Scene& source, const Moment& before, const Moment& now,
-                              const Assembly& assembly, const View& view) {
-    const std::vector<Assembly::Body>& bodies = assembly.bodies;
-    const bool deforms = assembly.fixed < bodies.size();
-    params_.eye = view.eye;
-    params_.near = view.near;
-    params_.right = view.right;
-    params_.orthographic = view.orthographic;
-    params_.up = view.up;
-    params_.first_moving = deforms ? bodies[assembly.fixed].first_vertex : ~0u;
-    params_.forward = view.forward;
-
-    f.scene.pose(f.commands, source, before);
-    f.scene.record_animation(f.commands, f.tracer->bodies());
+void MotionPicture::prepare(FrameState& f) {
     const MemoryPart part(f.device, "images");
-    const uint64_t instances = f.scene.instances.count() * sizeof(GpuTransform);
-    ensure_size(f.device, transforms_, "where instances stood", instances);
-    f.commands.copy(f.scene.instances.transforms(), transforms_, instances);
-    if (deforms) {
-        const uint64_t first = params_.first_moving * sizeof(glm::vec3),
-                       bytes = (bodies.back().first_vertex + bodies.back().vertices) * sizeof(glm::vec3) - first;
-        ensure_size(f.device, positions_, "where vertices were", bytes);
-        f.commands.copy(f.scene.triangles.positions, positions_, bytes, first);
-    }
     ensure_size(f.device, motions_, "motion in the picture", f.pixels() * sizeof(AovMotion));
-    f.commands.submit();
-    f.scene.pose(f.commands, source, now);
 }
 
 void MotionPicture::record(FrameState& f, const LevelParams& band) const {
-    MotionParams params = params_;
+    MotionParams params = f.before.params();
     params.capacity = band.capacity;
     params.first_row = band.first_row;
     f.commands.run(f.device.pass("aov_motion"),
@@ -41,8 +17,8 @@ void MotionPicture::record(FrameState& f, const LevelParams& band) const {
                     {"triangles", f.scene.triangles.triangles},
                     {"instances", f.scene.instances.table()},
                     {"hits", f.queues.level(0).hits},
-                    Binding::if_used("positions_before", positions_),
-                    {"transforms_before", transforms_},
+                    Binding::if_used("positions_before", f.before.positions()),
+                    {"transforms_before", f.before.transforms()},
                     {"motions", motions_}},
                    params, groups_for(params.capacity, 64));
 }

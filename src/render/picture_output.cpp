@@ -49,6 +49,10 @@ void PictureOutput::record_accumulation(Commands& commands, const PathQueues& qu
                  groups_for(p.capacity, 64));
 }
 
+void PictureOutput::record_memory(Commands& commands, const PictureSettings& settings) {
+    if (denoiser_) denoiser_->record_memory(commands, settings);
+}
+
 bool PictureOutput::record_post(Commands& commands, const PictureSettings& settings) {
     const bool posts = !post_passes_.empty();
     if (!posts && !open_ && !denoiser_) return false;

@@ -32,6 +32,8 @@ class PictureOutput {
     /// pass waits for is encoded along with the last sample, where that is known.
     void record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame, const LevelParams& p,
                              const PictureSettings& settings);
+    /// Once all bands of a picture have been submitted that is made for later ones only: records what these need.
+    void record_memory(Commands& commands, const PictureSettings& settings);
     /// Once all bands have been submitted: records the denoiser and the post passes, if there are any, and the
     /// encoding. False: nothing was left to do. From here on the `spp` of settings is the number of samples that the
     /// picture has.

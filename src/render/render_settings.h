@@ -13,6 +13,8 @@ struct RenderSettings : PictureSettings, TracerChoice {
     uint32_t repeat = 1;      ///< frames to render; times are medians over them
     bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
     bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
+
+    bool operator==(const RenderSettings&) const = default;
 };
 
 /// What `auto` stands for in a scene of so many triangles, if the device has room for it (smaller_than).

@@ -112,7 +112,7 @@ struct Renderer::Impl {
     void prepare_maps();
     void prepare_queues();
     void look_back();
-    FrameMeter render_frame(const PictureWatch& watch);
+    FrameMeter render_frame(const PictureWatch& watch, bool only_kept = false);
     void render_pass(const Passes& passes, FrameMeter& meter, const Progress& progress);
     void end_pass(Passes& passes);
     void describe_tracer();
@@ -122,7 +122,7 @@ struct Renderer::Impl {
     void record_shading(uint32_t sample, uint32_t first_row);
     bool finish_band(uint32_t first_row);
     void count_rays();
-    void finish_picture(FrameMeter& meter);
+    void finish_picture(FrameMeter& meter, bool only_kept);
     void describe(RenderStats& stats);
 };
 
@@ -132,8 +132,7 @@ void Renderer::Impl::prepare(const RenderSettings& settings, bool open) {
     check_settings(f.device, f.scene, settings);
     f.commands.time_passes(settings.time_passes);
     f.view.prepare(f.scene, settings);
-    output.prepare(settings, f.scene.has_unlit, open,
-                   settings.denoise && draws_at_random(settings) && !shades_by_maps(settings));
+    output.prepare(settings, f.scene.has_unlit, open, is_denoised(settings) && !shades_by_maps(settings));
     prepare_tracer();
     prepare_view();
     if (f.maps) prepare_maps();
@@ -234,15 +233,16 @@ void Renderer::Impl::prepare_queues() {
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
 }
 
-/// For Aovs::motion.
+/// For Aovs::motion and Denoise::temporal.
 void Renderer::Impl::look_back() {
     const PictureSettings& s = f.settings;
+    if (!(s.aovs && s.motion) && !is_temporal(s)) return;
     const View view = make_view(s.camera_before, float(s.width) / float(s.height), box.lower, box.upper);
-    aovs.motion().look_back(f, source, s.moment_before ? *s.moment_before : moment, moment, assembly, view);
+    f.before.look_back(f, source, s.moment_before ? *s.moment_before : moment, moment, assembly, view);
 }
 
-/// The stages are those of docs/frame.md.
-FrameMeter Renderer::Impl::render_frame(const PictureWatch& watch) {
+/// The stages are those of docs/frame.md. `only_kept`: the picture is made for later ones.
+FrameMeter Renderer::Impl::render_frame(const PictureWatch& watch, bool only_kept) {
     FrameMeter meter;
     Passes passes(f.settings, watch);
     const Progress progress = [&](double of_pass) {
@@ -258,7 +258,7 @@ FrameMeter Renderer::Impl::render_frame(const PictureWatch& watch) {
         render_pass(passes, meter, progress);
         end_pass(passes);
     }
-    finish_picture(meter);
+    finish_picture(meter, only_kept);
     rays.primary = f.pixels() * made.spp;
     return meter;
 }
@@ -352,8 +352,11 @@ void Renderer::Impl::count_rays() {
 }
 
 /// Post passes change the picture in place: not before its last band is known to have fitted.
-void Renderer::Impl::finish_picture(FrameMeter& meter) {
-    if (!output.record_post(f.commands, made)) return;
+void Renderer::Impl::finish_picture(FrameMeter& meter, bool only_kept) {
+    if (only_kept)
+        output.record_memory(f.commands, made);
+    else if (!output.record_post(f.commands, made))
+        return;
     f.commands.submit();
     meter.add(f.commands);
 }
@@ -395,12 +398,20 @@ void Renderer::add_post_pass(PostPass pass) {
     impl_->output.add(std::move(pass));
 }
 
+double Renderer::warm_up(const RenderSettings& settings, const PictureWatch& watch) {
+    Impl& r = *impl_;
+    const MemoryPart part(r.f.device, "frame");
+    r.prepare(settings, Passes(settings, watch).are_several());
+    r.look_back();
+    return r.render_frame(watch, true).ms;
+}
+
 RenderResult Renderer::render(const RenderSettings& settings, const PictureWatch& watch) {
     Impl& r = *impl_;
     Device& device = r.f.device;
     const MemoryPart part(device, "frame");
     r.prepare(settings, Passes(settings, watch).are_several());
-    if (settings.aovs && settings.motion) r.look_back();
+    r.look_back();
 
     RenderResult result;
     Measurement measurement(settings.repeat);

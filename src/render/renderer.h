@@ -30,6 +30,12 @@ class Renderer {
     /// From now on the pass runs after all others; see PostPass.
     void add_post_pass(PostPass pass);
 
+    /// With Denoise::temporal, before the picture of which it is one of the DENOISE_WARM_UP that come before it by
+    /// PictureSettings::number, with the same settings but for the moment: makes the picture and keeps of it what that
+    /// one needs. Pictures that render() has made are kept as well. Returns GPU milliseconds. Throws Error like
+    /// render().
+    double warm_up(const RenderSettings& settings, const PictureWatch& watch = {});
+
     /// Throws Error for impossible settings (naming the option) or when the device's limits or memory do not do.
     RenderResult render(const RenderSettings& settings, const PictureWatch& watch = {});
 

@@ -13,6 +13,7 @@ struct Box {
         lower = glm::min(lower, p);
         upper = glm::max(upper, p);
     }
+    bool operator==(const Box&) const = default;
 };
 
 }  // namespace peelray

@@ -30,6 +30,7 @@ struct Backdrop {
     Kind kind = Kind::environment;
     glm::vec3 color{0};
     bool is_transparent() const { return kind == Kind::transparent; }
+    bool operator==(const Backdrop&) const = default;
 };
 
 /// What a picture is to look like, whoever makes it. Defaults are those of the command line.
@@ -60,11 +61,14 @@ struct PictureSettings {
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
     bool motion = false;     ///< and Aovs::motion, which else is 0
     bool moments = false;    ///< also those of SAMPLE_AOVS, whether there are others or not
-    bool denoise = false;    ///< what is drawn at random is smoothed where the picture shows the same
-    Camera camera_before;    ///< for `motion`: where the camera was at the moment before
-    /// For `motion`: that moment, which must last until the picture is made; null: all stood where it stands. The
-    /// reference needs what is generated placed in it (Simulation).
+    Denoise denoise = Denoise::none;
+    int64_t number = 0;    ///< with Denoise::temporal: of the picture, in the order of the moments
+    Camera camera_before;  ///< for `motion` and Denoise::temporal: where the camera was at the moment before
+    /// For both: that moment, which must last until the picture is made; null: all stood where it stands. The reference
+    /// needs what is generated placed in it (Simulation).
     const Moment* moment_before = nullptr;
+
+    bool operator==(const PictureSettings&) const = default;
 };
 
 /// Auxiliary pictures at the pixel centres (path/aov_table.h); width·height entries each, row 0 at the top.
@@ -153,6 +157,14 @@ inline bool samples_emitters(const PictureSettings& settings) {
 /// Is any light drawn at random, so that a picture of few samples is noisy?
 inline bool draws_at_random(const PictureSettings& settings) {
     return is_sampled(settings) || settings.gi > 0 || settings.ambient;
+}
+
+/// Is such light smoothed? What is looked up in cube maps is not drawn.
+inline bool is_denoised(const PictureSettings& settings) {
+    return settings.denoise != Denoise::none && draws_at_random(settings);
+}
+inline bool is_temporal(const PictureSettings& settings) {
+    return settings.denoise == Denoise::temporal && draws_at_random(settings);
 }
 
 /// Levels of the tree of rays that reflections and refractions take: bounces, and the blended surfaces that a path goes

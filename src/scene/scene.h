@@ -198,6 +198,8 @@ struct Camera {
     float orthographic_height = 0;  ///< > 0: an orthographic camera that sees this height
     uint32_t number = 0;            ///< as the file counts its cameras; several nodes may show the same one
     std::string node;               ///< name of the node that shows it; empty: it has none, or none shows it
+
+    bool operator==(const Camera&) const = default;
 };
 
 struct Light {

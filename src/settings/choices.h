@@ -127,6 +127,17 @@ constexpr auto names_of(EnvVisible) {
         {{EnvVisible::yes, "yes"}, {EnvVisible::no, "no"}, {EnvVisible::blurred, "blurred"}});
 }
 
+/// What is done about the noise of light that is drawn at random.
+enum class Denoise : uint8_t {
+    none,
+    spatial,   ///< it is smoothed where the picture shows the same
+    temporal,  ///< of this picture and those of a fixed number of moments before, and then smoothed likewise
+};
+constexpr auto names_of(Denoise) {
+    return std::to_array<Named<Denoise>>(
+        {{Denoise::spatial, "spatial"}, {Denoise::temporal, "temporal"}, {Denoise::none, "none"}});
+}
+
 /// What every surface of a scene can be made of instead.
 enum class MaterialOverride : uint8_t { mirror, glass, clay };
 constexpr auto names_of(MaterialOverride) {

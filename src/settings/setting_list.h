@@ -23,6 +23,7 @@ struct SettingInfo {
     std::string expected = {};  ///< the same for an error: "three numbers X,Y,Z"; empty: after the type
     std::string preset = {};    ///< for help, where the value itself does not say what is done without it
     std::string none = {};      ///< of an optional value: the word for nothing, such as "auto"
+    std::string implied = {};   ///< the value where none is typed; empty: one must be
     Limits limits = {};
     bool required = false;
     bool several = false;         ///< may be given several times: a list that grows

@@ -92,7 +92,8 @@ SettingList sequence_settings(SequenceArguments& a) {
     add_setting(list, a.fps,
                 {.name = "fps",
                  .group = group,
-                 .help = "frames per second; of --aov motion, which looks back by one frame, also for one picture",
+                 .help = "frames per second; of --aov motion and --denoise temporal, which look back by frames, also "
+                         "for one picture",
                  .form = "F",
                  .preset = "30",
                  .limits = {.least = 0.001,

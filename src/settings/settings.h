@@ -309,7 +309,7 @@ struct EffectArguments {
     bool floor = false;
     bool shadow_catcher = false;
     bool no_energy_compensation = false;
-    bool denoise = false;
+    Denoise denoise = Denoise::none;
 };
 
 /// A list out of the effects, or "none".
@@ -368,8 +368,12 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
     add_setting(list, a.denoise,
                 {.name = "denoise",
                  .group = group,
-                 .help = "smooth the noise of light that is drawn at random, guided by the surfaces seen; textures, "
-                         "edges and clear mirror images stay sharp"});
+                 .help = "smooth the noise of light that is drawn at random, but not textures, edges or clear mirror "
+                         "images; temporal: with the light of the five frames before; default: none, and spatial "
+                         "where no value follows: each picture by itself",
+                 .form = "[spatial|temporal|none]",
+                 .expected = "one of spatial|temporal|none",
+                 .implied = "spatial"});
 }
 
 /// Which device works.

@@ -9,6 +9,7 @@
 
 #include "assembly/emitters.h"
 #include "base/text.h"
+#include "reference/past_pictures.h"
 #include "reference/path_tracer.h"
 
 namespace peelray {
@@ -21,7 +22,24 @@ static Emitters emitters_in(const PosedScene& posed, const PictureSettings& sett
                : Emitters{};
 }
 
-MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch) {
+namespace {
+
+struct KeptPast : CpuPast {
+    PastPictures pictures;
+};
+
+}  // namespace
+
+std::unique_ptr<CpuPast> make_cpu_past() {
+    return std::make_unique<KeptPast>();
+}
+
+double cpu_warm_up(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch, CpuPast& past) {
+    const RenderStats times = cpu_picture(scene, settings, watch, &past).stats.render;
+    return times.build_ms + times.frame_ms;
+}
+
+MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch, CpuPast* past) {
     using Clock = std::chrono::steady_clock;
     const auto ms = [](Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); };
     const auto start = Clock::now();
@@ -30,7 +48,7 @@ MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const
                             settings.tracer == Tracer::cpu ? Precision::single_ : Precision::double_);
     const auto built = Clock::now();
     MadePicture made;
-    made.picture = tracer.render(settings, watch);
+    made.picture = tracer.render(settings, watch, 0, past ? &static_cast<KeptPast*>(past)->pictures : nullptr);
     const auto done = Clock::now();
 
     const std::string threads = counted("{} CPU thread{|s}", std::max(1u, std::thread::hardware_concurrency()));
@@ -57,7 +75,15 @@ namespace peelray {
          setting::tracer, name_of(tracer), setting::tracer);
 }
 
-MadePicture cpu_picture(PosedScene&, const RenderSettings& settings, const PictureWatch&) {
+std::unique_ptr<CpuPast> make_cpu_past() {
+    fail_without(Tracer::cpu);
+}
+
+MadePicture cpu_picture(PosedScene&, const RenderSettings& settings, const PictureWatch&, CpuPast*) {
+    fail_without(settings.tracer);
+}
+
+double cpu_warm_up(PosedScene&, const RenderSettings& settings, const PictureWatch&, CpuPast&) {
     fail_without(settings.tracer);
 }
 

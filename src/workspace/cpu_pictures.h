@@ -6,8 +6,14 @@
 
 namespace peelray {
 
-/// By the tracer of the settings, which must be one that is_on_cpu().
-MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch);
+/// What is kept of pictures for later ones (Denoise::temporal).
+std::unique_ptr<CpuPast> make_cpu_past();
+
+/// By the tracer of the settings, which must be one that is_on_cpu(). `past`: null unless is_temporal(settings).
+MadePicture cpu_picture(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch, CpuPast* past);
+
+/// As Renderer::warm_up(); returns milliseconds.
+double cpu_warm_up(PosedScene& scene, const RenderSettings& settings, const PictureWatch& watch, CpuPast& past);
 
 /// What makes the tracer's pictures, which do not depend on the machine.
 std::string cpu_version(Tracer tracer);

@@ -95,6 +95,12 @@ void PosedScene::move_to(double seconds) {
     camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
 }
 
+void PosedScene::visit(double seconds) {
+    if (animation_.empty() || time_ == seconds) return;
+    pose(seconds);
+    camera_ = choose_camera(settings_, *scene_, moment_.cameras, framing_);
+}
+
 PosedScene::Glimpse PosedScene::glimpse(double seconds, bool simulate) {
     Moment moment = moment_of(*scene_, animation_, seconds);
     if (simulate) glimpsed_.place(*scene_, moment);

@@ -48,6 +48,9 @@ class PosedScene {
     /// animation the scene stays at rest.
     void move_to(double seconds);
 
+    /// The same, but what frames the picture stays as it is at this moment.
+    void visit(double seconds);
+
     /// Another moment of the animation, and the camera then; it frames what the camera of this moment does. The scene
     /// stays where it is. `simulate`: what is generated is placed in it, for who reads it on the CPU.
     struct Glimpse {

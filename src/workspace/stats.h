@@ -29,8 +29,10 @@ struct PictureStats {
     Camera camera;           ///< that the picture is seen from, but for Shot::turn; relative to `origin`
     SamplesMade samples;
     RayCounts rays;
-    RenderStats render;           ///< where is_on_cpu() only times and passes
-    RayCosts largest_of_a_pixel;  ///< where costs were counted
+    uint32_t warm_up_pictures = 0;  ///< that were rendered before, of other moments (Denoise::temporal),
+    double warm_up_ms = 0;          ///< and how long they took: rays and times are those of the picture itself
+    RenderStats render;             ///< where is_on_cpu() only times and passes
+    RayCosts largest_of_a_pixel;    ///< where costs were counted
 
     bool by_cpu() const { return is_on_cpu(render.tracer); }
     /// Were rays traced in layered depth cubes?

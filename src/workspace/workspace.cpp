@@ -16,7 +16,7 @@ namespace {
 
 /// What to say of a picture that is to be denoised and has no noise; else "".
 std::string clean_note(const RenderSettings& settings) {
-    if (!settings.denoise) return "";
+    if (settings.denoise == Denoise::none) return "";
     if (settings.tracer == Tracer::cubemap)
         return fmt::format("{} changes nothing: with {} cubemap no light is drawn at random", Setting{"denoise"},
                            setting::tracer);
@@ -52,6 +52,7 @@ void Workspace::check(Tracer tracer) {
 void Workspace::renew_device() {
     renderer_.reset();
     device_.reset();
+    kept_.clear();
     noted_ = {};
 }
 
@@ -63,27 +64,33 @@ MadePicture Workspace::render(const Shot& shot, const PictureWatch& watch) {
     return render(render_settings(settings_), shot, watch);
 }
 
-MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const PictureWatch& watch) {
+MadePicture Workspace::render(RenderSettings settings, const Shot& given, const PictureWatch& watch) {
     check(settings.tracer);
-    if (shot.time) scene_.move_to(*shot.time);
-    settings.camera = turned(scene_.camera(), shot.turn);
-    settings.bounds = scene_.bounds();
+    if (given.time) scene_.move_to(*given.time);
+    const Shot shot = given.at(scene_.time());
     settings.env_mode = scene_.env_mode();
-    const std::optional<PosedScene::Glimpse> before = look_back(settings, shot);
-    settings.moment_before = before ? &before->moment : nullptr;
+    note_settings(settings);
+    if (settings.tracer == Tracer::cubemap) settings.denoise = Denoise::none;
+    // Another moment may have framed them otherwise.
+    if (!is_temporal(settings) || settings_.frame_moment) kept_.clear();
     PictureWatch interrupts = watch;
     bool whole = false;  // there is something to keep
+    double share_before = 0;
     interrupts.progress = [&](double share) {
         if (!whole) check_interrupt();
-        if (watch.progress) watch.progress(share);
+        if (watch.progress) watch.progress(share_before + (1 - share_before) * share);
     };
     if (watch.stop) interrupts.stop = [&] { return whole = true, watch.stop(); };
-    if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
-        note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
-    const std::string clean = clean_note(settings);
-    if (!clean.empty() && !std::exchange(noted_.denoise, true)) note(notes_, clean);
-    MadePicture made =
-        is_on_cpu(settings.tracer) ? cpu_picture(scene_, settings, interrupts) : render_on_device(settings, interrupts);
+    const WarmUp warm = is_temporal(settings) ? warm_up(settings, shot, interrupts.progress) : WarmUp{};
+    share_before = double(warm.pictures) / (warm.pictures + 1);
+    const RenderSettings asked = settings;
+    const std::unique_ptr<PosedScene::Glimpse> before = pose(settings, shot);
+    if (is_temporal(settings)) kept_.begin(shot);
+    MadePicture made = is_on_cpu(settings.tracer) ? cpu_picture(scene_, settings, interrupts, past_for(settings))
+                                                  : render_on_device(settings, interrupts);
+    if (is_temporal(settings) && made.picture.samples.end == PictureEnd::samples) kept_.add(asked, shot);
+    made.stats.warm_up_pictures = warm.pictures;
+    made.stats.warm_up_ms = warm.ms;
     note_uncaught(settings);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
@@ -93,13 +100,60 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& shot, const P
     return in_world(std::move(made));
 }
 
-std::optional<PosedScene::Glimpse> Workspace::look_back(RenderSettings& settings, const Shot& shot) {
-    std::optional<PosedScene::Glimpse> before;
-    if (!settings.aovs || !settings.motion) return before;
-    if (scene_.time() && shot.fps > 0)
-        before = scene_.glimpse(moment_before(*scene_.time(), shot.fps), is_on_cpu(settings.tracer));
-    settings.camera_before = turned(before ? before->camera : scene_.camera(), shot.turn_before);
+/// Says so, once each, where settings change nothing.
+void Workspace::note_settings(const RenderSettings& settings) {
+    if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
+        note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
+    const std::string clean = clean_note(settings);
+    if (!clean.empty() && !std::exchange(noted_.denoise, true)) note(notes_, clean);
+}
+
+std::unique_ptr<PosedScene::Glimpse> Workspace::pose(RenderSettings& settings, const Shot& shot) {
+    if (shot.time) scene_.visit(*shot.time);
+    settings.camera = turned(scene_.camera(), shot.turn());
+    settings.bounds = scene_.bounds();
+    settings.env_mode = scene_.env_mode();
+    if (is_temporal(settings)) {
+        settings.number = *shot.number;
+        settings.seed = seed_of(settings.seed, *shot.number);
+    }
+    std::unique_ptr<PosedScene::Glimpse> before;
+    if (!(settings.aovs && settings.motion) && !is_temporal(settings)) return before;
+    const Shot earlier = shot.before();
+    if (earlier.time && shot.fps > 0)
+        before = std::make_unique<PosedScene::Glimpse>(scene_.glimpse(*earlier.time, is_on_cpu(settings.tracer)));
+    settings.camera_before = turned(before ? before->camera : scene_.camera(), earlier.turn());
+    settings.moment_before = before ? &before->moment : nullptr;
     return before;
+}
+
+/// Renders those of the pictures before that are not kept from earlier ones, oldest first.
+Workspace::WarmUp Workspace::warm_up(const RenderSettings& settings, const Shot& shot,
+                                     const std::function<void(double)>& progress) {
+    std::vector<Shot> shots;
+    for (Shot earlier = shot.before(); shots.size() < DENOISE_WARM_UP; earlier = earlier.before())
+        shots.insert(shots.begin(), earlier);
+    WarmUp made;
+    for (size_t i = 0; i < shots.size(); i++) {
+        if (kept_.has(settings, shots[i])) continue;
+        kept_.begin(shots[i]);
+        RenderSettings of_picture = settings;
+        of_picture.aovs = of_picture.counters = of_picture.moments = false;
+        const std::unique_ptr<PosedScene::Glimpse> before = pose(of_picture, shots[i]);
+        const PictureWatch watch([&](double share) { progress((double(i) + share) / double(shots.size() + 1)); });
+        made.ms += is_on_cpu(of_picture.tracer) ? cpu_warm_up(scene_, of_picture, watch, *past_for(of_picture))
+                                                : renderer_for(of_picture).warm_up(of_picture, watch);
+        made.pictures++;
+        kept_.add(settings, shots[i]);
+    }
+    return made;
+}
+
+/// Null: pictures do not depend on others.
+CpuPast* Workspace::past_for(const RenderSettings& settings) {
+    if (!is_temporal(settings)) past_.reset();
+    if (is_temporal(settings) && !past_) past_ = make_cpu_past();
+    return past_.get();
 }
 
 /// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at
@@ -133,6 +187,7 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
     const Kind kind{settings.tracer, settings.hit_auto, settings.cubes.hit};
     if (!renderer_ || !(kind == kind_)) {
         renderer_.reset();
+        kept_.clear();
         device().reset_peak();
         check_room(*device_, scene_.scene());
         note_environment();

@@ -14,7 +14,9 @@
 #include <optional>
 
 #include "workspace/posed_scene.h"
+#include "workspace/shot.h"
 #include "workspace/stats.h"
+#include "workspace/warm_up.h"
 
 namespace peelray {
 
@@ -22,16 +24,6 @@ namespace peelray {
 struct MadePicture {
     Picture picture;
     PictureStats stats;
-};
-
-/// When and from where a picture is seen.
-struct Shot {
-    std::optional<double> time;  ///< of the animation, if there is one, seconds; none: where the scene is
-    double turn = 0;             ///< how far the camera goes around its look point, see turned()
-    /// For Aovs::motion, which tells where all was a frame before: how many frames the animation has in a second, 0:
-    /// it stands still; and `turn` of that frame.
-    double fps = 30;
-    double turn_before = 0;
 };
 
 /// Opens the device when a tracer first needs one and keeps it, and what is on it, from picture to picture.
@@ -63,9 +55,17 @@ class Workspace {
   private:
     Device& device();
     Renderer& renderer_for(const RenderSettings& settings);
-    /// The moment before, if anything but the camera may have moved since, and in the settings the camera then.
-    std::optional<PosedScene::Glimpse> look_back(RenderSettings& settings, const Shot& shot);
+    /// Goes to the shot's moment and completes the settings. Returns the moment before, if it is of interest and
+    /// anything but the camera may have moved since: the settings refer to it.
+    std::unique_ptr<PosedScene::Glimpse> pose(RenderSettings& settings, const Shot& shot);
+    struct WarmUp {
+        uint32_t pictures = 0;
+        double ms = 0;  ///< GPU time
+    };
+    WarmUp warm_up(const RenderSettings& settings, const Shot& shot, const std::function<void(double)>& progress);
+    CpuPast* past_for(const RenderSettings& settings);
     MadePicture in_world(MadePicture made) const;
+    void note_settings(const RenderSettings& settings);
     void note_cubes(const RenderStats& stats);
     void note_environment();
     void note_uncaught(const PictureSettings& settings);
@@ -77,6 +77,8 @@ class Workspace {
     PosedScene scene_;
     std::unique_ptr<Device> device_;
     std::unique_ptr<Renderer> renderer_;
+    KeptPictures kept_;              ///< by the renderer, or by
+    std::unique_ptr<CpuPast> past_;  ///< the CPU tracer
     /// What the renderer was made for.
     struct Kind {
         Tracer tracer;

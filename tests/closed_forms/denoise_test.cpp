@@ -20,7 +20,7 @@ class DenoiseTest : public PictureTest {
         RenderSettings s = settings_for(camera, 64);
         s.ambient = true;
         s.spp = spp;
-        s.denoise = denoise;
+        s.denoise = denoise ? Denoise::spatial : Denoise::none;
         return s;
     }
     /// Mean squared difference of the luminances where there are surfaces in all samples.
@@ -59,7 +59,7 @@ TEST_F(DenoiseTest, TakesItInAMirror) {
     s.camera.look = {0, 1.5f, 6};
     const auto picture = [&](uint32_t spp, bool denoise) {
         s.spp = spp;
-        s.denoise = denoise;
+        s.denoise = denoise ? Denoise::spatial : Denoise::none;
         return render(stage, white, s);
     };
     const RenderResult truth = picture(256, false), noisy = picture(1, false);
@@ -74,7 +74,7 @@ TEST_F(DenoiseTest, WhatIsNotDrawnAtRandomStays) {
     RenderSettings s = settings_for_corner(1, false);
     s.ambient = false;
     const RenderResult plain = render(stage, white, s);
-    s.denoise = true;
+    s.denoise = Denoise::spatial;
     EXPECT_EQ(render(stage, white, s).radiance, plain.radiance);
 }
 
@@ -87,7 +87,7 @@ TEST_F(DenoiseTest, EmissionAndItsImagesStay) {
     RenderSettings s = settings_for_corner(4, false);
     s.ambient = false;
     const RenderResult plain = render(stage, black, s);
-    s.denoise = true;
+    s.denoise = Denoise::spatial;
     EXPECT_EQ(render(stage, black, s).radiance, plain.radiance);
 }
 
@@ -105,7 +105,7 @@ TEST_F(DenoiseTest, VarianceIsThatOfTheSamples) {
     RenderSettings s = settings_for_corner(4, false);
     s.moments = true;
     const RenderResult plain = render(stage, white, s);
-    s.denoise = true;
+    s.denoise = Denoise::spatial;
     const RenderResult smooth = render(stage, white, s);
     EXPECT_EQ(smooth.aovs.variance, plain.aovs.variance);
     EXPECT_NE(smooth.radiance, plain.radiance);

@@ -69,7 +69,7 @@ TEST(Workspace, TracersOneAfterTheOther) {
 
 TEST(Workspace, TheCameraGoesRound) {
     Workspace workspace(small("builtin:teapots"));
-    const MadePicture front = workspace.render(), side = workspace.render({.turn = 0.25});
+    const MadePicture front = workspace.render(), side = workspace.render({.number = 1, .turntable = 4});
     EXPECT_NE(front.picture.encoded, side.picture.encoded);
     expect_identical(workspace.render(), front);
 }
@@ -91,7 +91,8 @@ TEST(Workspace, MotionIsWhatTheFrameBeforeShowsByEveryTracer) {
             triangles.push_back(aovs.triangle);
             for (const glm::vec2& v : workspace.render(settings, {.fps = 0}).picture.aovs.motion)
                 ASSERT_EQ(v, glm::vec2(0)) << "all stands still";
-            const auto round = workspace.render(settings, {.fps = 0, .turn_before = -0.01}).picture.aovs.motion;
+            const auto round =
+                workspace.render(settings, {.fps = 0, .number = 0, .turntable = 100}).picture.aovs.motion;
             EXPECT_GT(std::ranges::count_if(round, [](const auto& v) { return glm::length(v) > 0.05f; }), 50);
         }
         size_t moved = 0;

@@ -24,7 +24,7 @@ TEST(SequencePlan, FramesAreMomentsOfTheAnimation) {
     const Sequence sequence = plan_sequence(of_frames(10, 13));
     EXPECT_EQ(sequence.numbers(), Numbers({10, 11, 12}));
     EXPECT_EQ(sequence.shot(10).time, 10 / 30.0);
-    EXPECT_EQ(sequence.shot(10).turn, 0);
+    EXPECT_EQ(sequence.shot(10).turn(), 0);
     RenderArguments slow = of_frames(0, 3);
     slow.sequence.fps = 0.5;
     EXPECT_EQ(plan_sequence(slow).shot(2).time, 4.0);
@@ -33,7 +33,7 @@ TEST(SequencePlan, FramesAreMomentsOfTheAnimation) {
 TEST(SequencePlan, ATurntableStandsUnlessTheAnimationIsAskedFor) {
     const Sequence standing = plan_sequence(of_turntable(8));
     EXPECT_EQ(standing.numbers().size(), 8u);
-    EXPECT_EQ(standing.shot(2).turn, 0.25);
+    EXPECT_EQ(standing.shot(2).turn(), 0.25);
     EXPECT_EQ(standing.shot(2).time, std::nullopt);
 
     RenderArguments with_fps = of_turntable(8), with_animation = of_turntable(8), at_a_time = of_turntable(8);
@@ -48,7 +48,7 @@ TEST(SequencePlan, ATurntableStandsUnlessTheAnimationIsAskedFor) {
     RenderArguments part = of_turntable(8);
     part.sequence.frames = FrameRange{6, 8};
     EXPECT_EQ(plan_sequence(part).numbers(), Numbers({6, 7}));
-    EXPECT_EQ(plan_sequence(part).shot(6).turn, 0.75);
+    EXPECT_EQ(plan_sequence(part).shot(6).turn(), 0.75);
 }
 
 TEST(SequencePlan, ShardsShareTheFramesOutAndLoseNone) {
