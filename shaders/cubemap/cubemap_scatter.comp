@@ -29,7 +29,8 @@ GpuObject object;  // of this thread's hit
 bool samplesMicrofacets() { return false; }
 vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) { return meanMicrofacet(lobe, view); }
 float tracedPart(float roughness, float metallic) { return 1.0; }
-vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) { return environmentRadiance(direction, blur); }
+bool blursCones() { return false; }
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone, uint medium) { return environmentRadiance(direction, blur); }
 void decide(inout Branch branch, RayState state, bool passes) {
     branch.traced = (frame[0].effects & branch.effect) != 0u && object.probe != NO_PROBE;
 }

@@ -47,15 +47,23 @@ float tracedPart(float roughness, float metallic);
 /// Sets `traced` by the branch's effect; `passes`: the ray goes on through a blended surface.
 void decide(inout Branch branch, RayState state, bool passes);
 
-/// Of the environment's light what a ray of this density and cone brings; the rest is found otherwise. `blur` in [0, 1]: roughness.
-vec3 environmentSeen(vec3 direction, float blur, float density, uint cone);
+/// Do cones hold how much rough lobes blur? Such rays see filtered levels.
+bool blursCones();
+/// Of the environment's light what a ray of this density, cone and RayState::medium brings; the rest is found otherwise. `blur` in
+/// [0, 1]: roughness.
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone, uint medium);
+
+/// The cone of what a lobe sends on; `part`: of its alpha.
+vec2 lobeCone(vec2 cone, Lobe lobe, float part) {
+    return blursCones() && !isMirror(lobe) ? coneBlurred(cone, part * lobe.roughness * lobe.roughness) : cone;
+}
 
 /// What a branch that is not traced sees.
 vec3 untracedLight(Branch branch) {
-    vec3 light = environmentSeen(branch.direction, branch.blur, branch.density, branch.cone);
+    vec3 light = environmentSeen(branch.direction, branch.blur, branch.density, branch.cone, branch.medium);
     if (dispersive && branch.dispersed) {
-        light.r = environmentSeen(branch.red, branch.blur, branch.density, branch.cone).r;
-        light.b = environmentSeen(branch.blue, branch.blur, branch.density, branch.cone).b;
+        light.r = environmentSeen(branch.red, branch.blur, branch.density, branch.cone, branch.medium).r;
+        light.b = environmentSeen(branch.blue, branch.blur, branch.density, branch.cone, branch.medium).b;
     }
     return branch.weight * light;
 }
@@ -104,7 +112,7 @@ void addCoat(Surface s, Material m, vec3 incoming, RayState state, vec2 cone, bo
     const vec3 direction = aboveSurface(reflected, s.geometric);
     const float density = isSampled(lobe) && !has_second ? lobeDensity(lobe, view, normalize(view + direction)) : 0.0;
     Branch coat = branchAlong(vec3(weight), direction, state.medium & ~(isMirror(lobe) ? 0u : RAY_SEES_SUN),
-                              keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION, density);
+                              keptCone(lobeCone(coneReflected(cone, s.curvature), lobe, 1.0)), EFFECT_REFLECTION, density);
     decide(coat, state, false);
     radiance += fade(coat, m.coat_roughness, 0.0);
     coat.blur = samplesMicrofacets() ? 0.0 : m.coat_roughness;
@@ -232,7 +240,7 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     const uint medium = state.medium & ~RAY_SEES_SUN;
     const vec3 mirrored = aboveSurface(facet.reflected, s.geometric);
     const float density = isSampled(lobe) && !sharesBranch(s, m) ? lobeDensity(lobe, view, normalize(view + mirrored)) : 0.0;
-    reflection = branchAlong(reflected * below, mirrored, medium | sun, keptCone(coneReflected(cone, s.curvature)), EFFECT_REFLECTION, density);
+    reflection = branchAlong(reflected * below, mirrored, medium | sun, keptCone(lobeCone(coneReflected(cone, s.curvature), lobe, 1.0)), EFFECT_REFLECTION, density);
     decide(reflection, state, false);
     const bool transparent = transmits(m);
     if (!transparent) radiance += fade(reflection, lobe.roughness, m.metallic);
@@ -241,7 +249,8 @@ vec3 scatterSurface(Surface s, vec3 incoming, Interface face, RayState state, ve
     if (transparent && facet.passes) {
         const bool thin = (m.flags & MATERIAL_THIN) != 0u;
         const uint inside = mediumBehind(s, m, medium);
-        const vec2 beyond = thin ? cone : coneRefracted(cone, s.curvature, face.eta);
+        // A microfacet turns what it refracts less than what it mirrors, as Snell's law has it near the normal.
+        const vec2 beyond = thin ? lobeCone(cone, lobe, 1.0) : lobeCone(coneRefracted(cone, s.curvature, face.eta), lobe, 0.5 * abs(1.0 - 1.0 / face.eta));
         const vec3 direction = thin && isSampled(lobe) ? -aboveSurface(-facet.through, s.geometric) : facet.through;
         refraction = branchAlong(through * transmissionTint(m, s.base_color) * below, direction, inside | sun, keptCone(beyond), EFFECT_REFRACTION,
                                  state.density);

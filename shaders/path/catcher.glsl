@@ -14,8 +14,12 @@ void catchShadows(Ray ray, RayState state, Material m, inout Scattering c, out u
     const Shade shade = shadeOf(c.surface, m, view);
     vec3 all, below, light = vec3(0);
     skyLight(c.surface, m, shade, view, all, below);
-    sky_rays = catchesSky() && all != vec3(0) ? 1u : 0u;
-    if (sky_rays == 0u) light = all;
+    if (!catchesSky() || all == vec3(0)) {
+        sky_rays = 0u;
+        light = all;
+    } else {
+        sky_rays = env_filtered ? countSky(c.surface, shade, c.from, all, vec3(0), light) : 1u;
+    }
     c.light_rays = sky_rays;
     for (uint k = 0u; k < frame[0].all_lights; k++) {
         vec3 direction;
@@ -31,19 +35,21 @@ void catchShadows(Ray ray, RayState state, Material m, inout Scattering c, out u
     c.node.flags = NODE_CATCHER | (open ? NODE_SHARE : 0u);
 }
 
-/// Puts the shadow rays that catchShadows() counted into the queue from `slot` on.
-void emitCaught(uint slot, Surface s, vec3 view, vec3 share, MediaStack before, SurfaceId from, uint seed) {
+/// Puts the shadow rays that catchShadows() counted into the queue from `slot` to `end`.
+void emitCaught(uint slot, uint end, Surface s, vec3 view, vec3 share, MediaStack before, SurfaceId from, uint seed) {
     const Material m = materialOf(s);
     const Shade shade = shadeOf(s, m, view);
     vec3 sky, below;
     skyLight(s, m, shade, view, sky, below);
-    if (catchesSky() && sky != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, sky * share);
-    if ((frame[0].effects & EFFECT_SHADOW) == 0u) return;
-    for (uint k = 0u; k < frame[0].all_lights; k++) {
-        vec3 direction;
-        const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
-        if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, false), before, from, light * share);
+    if (!env_filtered && catchesSky() && sky != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, sky * share);
+    if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
+        for (uint k = 0u; k < frame[0].all_lights; k++) {
+            vec3 direction;
+            const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
+            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, false), before, from, light * share);
+        }
     }
+    if (env_filtered && catchesSky() && sky != vec3(0)) emitSky(slot, end - slot, s, shade, from, sky, vec3(0), share, before, before);
 }
 
 #endif

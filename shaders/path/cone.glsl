@@ -21,4 +21,14 @@ vec2 coneRefracted(vec2 cone, float curvature, float eta) {
     return vec2(cone.x, (cone.y + turn) / eta - turn);
 }
 
+
+/// After a lobe of this alpha. Half of what GGX reflects is within atan(alpha) of the mean microfacet, and so within twice that of the mean
+/// direction; the cone is as wide. Both blur, and a focus is lost.
+vec2 coneBlurred(vec2 cone, float alpha) {
+    const float spread = sqrt(cone.y * cone.y + 16.0 * alpha * alpha);
+    return vec2(cone.x, cone.x < 0.0 ? -spread : spread);
+}
+/// Of a lobe as wide as a cone that grows by `spread`.
+float alphaOfSpread(float spread) { return 0.25 * abs(spread); }
+
 #endif

@@ -70,9 +70,13 @@ struct Frame {
     uint backdrop;        ///< BACKDROP_*
     uint backdrop_first;  ///< of the blurred picture, among the environment's texels
     vec3 backdrop_color;
+    // What is filtered of the environment (src/scene/filtered_environment.h), in the lookups.
+    uvec2 filtered_size;  ///< of the first level
+    uint filtered_first, filtered_levels;
+    uint filtered_directions;  ///< where they begin: direction and light
     uint all_lights;  ///< with those that stand for a part of an image that is sampled, behind the others
 };
-SHARED_SIZE(Frame, 384);
+SHARED_SIZE(Frame, 404);
 #define EFFECT_REFLECTION 1u
 #define EFFECT_REFRACTION 2u
 #define EFFECT_SHADOW 4u

@@ -11,15 +11,26 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool camera = false;     // level 0
 layout(constant_id = 1) const bool by_number = false;  // see seen.glsl
 layout(constant_id = 2) const bool layered = false;    // media may overlap or touch: all rays were traced by trace_media
+#ifdef SCATTER_FILTERED
+const bool env_filtered = true, env_sampled = false;  // the environment's light is found without noise
+const uint sampled = 0u;
+#else
+const bool env_filtered = false;
 layout(constant_id = 7) const uint sampled = 2u;         // EFFECT_SAMPLED, or 2: the frame says so
+#endif
 #ifdef SCATTER_DRAWN
+#ifndef SCATTER_FILTERED
 layout(constant_id = 3) const bool env_sampled = false;  // the environment's light is found by sampling
+#endif
 layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are followed
 layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
 layout(constant_id = 6) const bool many_lamps = false;   // one of them is drawn
 layout(constant_id = 8) const bool soft_lamps = false;   // some have a size, and lobes are sampled
 #else
-const bool env_sampled = false, indirect = false, emitting = false, many_lamps = false, soft_lamps = false;
+#ifndef SCATTER_FILTERED
+const bool env_sampled = false;
+#endif
+const bool indirect = false, emitting = false, many_lamps = false, soft_lamps = false;
 #endif
 PARAMS(LevelParams)
 #define SCENE_FIRST_BINDING 0
@@ -67,9 +78,13 @@ vec2 randomAt(uint seed, uint purpose) {
     return randomPair(seed, params.level, params.sample_index, frame[0].sample_bits, purpose, frame[0].seed);
 }
 
+vec3 filteredSky(vec3 direction, uint cone, uint medium);
+bool blursCones() { return env_filtered; }
+
 /// What rays of lobes bring counts by the balance heuristic, since light is also found otherwise. What sees a sharp image of the
 /// environment sees it filtered by its cone: the sun's disc in a curved coat would be noise.
-vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) {
+vec3 environmentSeen(vec3 direction, float blur, float density, uint cone, uint medium) {
+    if (env_filtered) return indirect && density < 0.0 ? vec3(0) : filteredSky(direction, cone, medium);
     if (!env_sampled) return environmentRadiance(direction, blur);
     if (indirect && density < 0.0) return vec3(0);
     if (density == 0.0) return environmentAt(direction, environmentLevelOf(unpackCone(cone).y));
@@ -79,8 +94,8 @@ vec3 environmentSeen(vec3 direction, float blur, float density, uint cone) {
 /// On a miss.
 vec3 skyAlong(Ray ray, RayState state) {
     const bool sees_sun = (state.medium & RAY_SEES_SUN) != 0u;
-    if (!env_sampled) return skyRadiance(ray.direction, sees_sun);
-    return environmentSeen(ray.direction, 0.0, state.density, state.cone) + (sees_sun ? sunDisc(ray.direction) : vec3(0));
+    if (!env_sampled && !env_filtered) return skyRadiance(ray.direction, sees_sun);
+    return environmentSeen(ray.direction, 0.0, state.density, state.cone, state.medium) + (sees_sun ? sunDisc(ray.direction) : vec3(0));
 }
 
 /// The half vector: the mean one for mirrors and with one sample per pixel, else a sample of the visible normals.
@@ -91,7 +106,7 @@ vec3 microfacet(Lobe lobe, vec3 view, uint seed, uint purpose) {
 
 /// Part of the rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe.
 float tracedPart(float roughness, float metallic) {
-    if (env_sampled) return 1.0;
+    if (env_sampled || env_filtered) return 1.0;
     if (samplesMicrofacets()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1.0 : 0.0;
     return 1.0 - smoothstep(FADE_FIRST_ROUGHNESS, FADE_LAST_ROUGHNESS, roughness);
 }
@@ -196,6 +211,7 @@ Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState sta
 }
 
 #include "path/drawn_light.glsl"
+#include "path/filtered_light.glsl"
 
 /// The light that no ray is to be traced for. `sky`: the sky's is wanted; `rays`: how many shadow rays the rest needs, of them `sky_rays`
 /// to the sky; `found`: what is drawn for some of them.
@@ -229,14 +245,17 @@ vec3 unshadowedLight(Surface s, Material m, Shade shade, vec3 view, SurfaceId fr
     vec3 front, behind;
     skyLight(s, m, shade, view, front, behind);
     if ((frame[0].effects & EFFECT_AMBIENT) == 0u) return sum + front + behind;
-    sky_rays = (front != vec3(0) ? 1u : 0u) + (behind != vec3(0) ? 1u : 0u);
+    if (env_filtered)
+        sky_rays = countSky(s, shade, from, front, behind, sum);
+    else
+        sky_rays = (front != vec3(0) ? 1u : 0u) + (behind != vec3(0) ? 1u : 0u);
     rays += sky_rays;
     return sum;
 }
 
-/// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` on; `share`: of their light that gets through to where
+/// Puts the shadow rays that unshadowedLight() counted into the queue from `slot` to `end`; `share`: of their light that gets through to where
 /// the hit is seen from; `before`, `behind`: the media on either side.
-void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, DrawnLight found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
+void emitLights(uint slot, uint end, Surface s, Material m, vec3 view, vec3 share, DrawnLight found, bool sky, MediaStack before, MediaStack behind, SurfaceId from, uint seed) {
     if (!transmits(m)) behind = before;  // here the wall lets nothing but diffuse light through
     const Shade shade = shadeOf(s, m, view);
     if ((frame[0].effects & EFFECT_SHADOW) != 0u) {
@@ -266,6 +285,10 @@ void emitLights(uint slot, Surface s, Material m, vec3 view, vec3 share, DrawnLi
     if (env_sampled || !sky || (frame[0].effects & EFFECT_AMBIENT) == 0u) return;
     vec3 front, back;
     skyLight(s, m, shade, view, front, back);
+    if (env_filtered) {
+        emitSky(slot, end - slot, s, shade, from, front, back, share, before, behind);
+        return;
+    }
     if (front != vec3(0)) emitLight(slot++, skyRay(s, seed, false), before, from, front * share);
     if (back != vec3(0)) emitLight(slot, skyRay(s, seed, true), behind, from, back * share);
 }
@@ -380,7 +403,7 @@ void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c
     } else if (!ignoresLight(c.surface, m)) {
         const Shade shade = shadeOf(c.surface, m, -ray.direction);
         if (indirect) c.diffuse = diffuseBranch(c.surface, m, shade, -ray.direction, state, cone, mediumBehind(c.surface, m, state.medium));
-        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state, !c.diffuse.traced, c.light_rays, sky_rays, c.found);
+        c.node.radiance += c.surface.alpha * unshadowedLight(c.surface, m, shade, -ray.direction, c.from, state, env_filtered || !c.diffuse.traced, c.light_rays, sky_rays, c.found);
     }
     c.node.radiance *= c.lost;
     if (catching) c.light_share *= c.lost;
@@ -465,9 +488,9 @@ void main() {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;
             if (catching && (c.node.flags & NODE_CATCHER) != 0u)
-                emitCaught(c.node.first_light, c.surface, -ray.direction, c.light_share, c.before, c.from, state.seed);
+                emitCaught(c.node.first_light, c.node.first_light + c.light_rays, c.surface, -ray.direction, c.light_share, c.before, c.from, state.seed);
             else
-                emitLights(c.node.first_light, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, !c.diffuse.traced,
+                emitLights(c.node.first_light, c.node.first_light + c.light_rays, c.surface, materialOf(c.surface), -ray.direction, c.surface.alpha * c.lost, c.found, env_filtered || !c.diffuse.traced,
                            c.before, c.behind, c.from, state.seed);
         }
         nodes[i] = c.node;

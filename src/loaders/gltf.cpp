@@ -7,6 +7,7 @@
 #include "base/setting.h"
 #include "base/text.h"
 #include "loaders/gltf_check.h"
+#include "loaders/gltf_image_light.h"
 
 namespace peelray {
 
@@ -47,6 +48,8 @@ Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
     loader.point_size = options.point_size;
     loader.read_materials();
     loader.read_nodes();
+    if (const auto& light = loader.file.extensions().image_light)
+        loader.scene.cube_light = read_image_light(loader.file, *light);
     loader.read_skins();
     loader.read_animations();
     settle_origin(loader.scene, loader.exact_nodes);

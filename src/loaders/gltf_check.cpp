@@ -19,7 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array supported_extensions = std::to_array<std::string_view>({"EXT_mesh_gpu_instancing",
+constexpr std::array supported_extensions = std::to_array<std::string_view>({"EXT_lights_image_based",
+                                                                             "EXT_mesh_gpu_instancing",
                                                                              "EXT_meshopt_compression",
                                                                              "EXT_texture_webp",
                                                                              "KHR_draco_mesh_compression",

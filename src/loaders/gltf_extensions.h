@@ -2,7 +2,9 @@
 // (it is built with Draco), or would not keep.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -25,6 +27,14 @@ struct GltfExtensions {
         size_t buffer = 0, offset = 0, length = 0;
         MeshoptLayout layout;
     };
+    /// EXT_lights_image_based of the scene that is shown (gltf_image_light.h).
+    struct ImageLight {
+        std::string where;           ///< its place in messages
+        std::array<int, 6> faces{};  ///< images of the largest level
+        glm::dmat3 turn{1};
+        double intensity = 1, size = 0;
+    };
+    std::optional<ImageLight> image_light;
     std::vector<std::optional<CompressedView>> compressed_views;         ///< one per buffer view
     std::vector<bool> fallback_buffers;                                  ///< one per buffer: nothing but fallbacks
     std::vector<std::vector<std::optional<DracoSource>>> draco_sources;  ///< one per mesh, in it one per primitive

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "loaders/gltf_check.h"
+#include "loaders/gltf_image_light.h"
 
 namespace peelray {
 
@@ -78,8 +79,11 @@ GltfFile::GltfFile(const std::filesystem::path& path)
     const bool is_glb = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
     const Glb glb = is_glb ? split_glb(bytes) : Glb{bytes, {}};
     json checked;
+    std::optional<GltfExtensions::ImageLight> image_light;
     try {
-        checked = check_gltf(json::parse(glb.json.begin(), glb.json.end()), name_, ignored_);
+        const json root = json::parse(glb.json.begin(), glb.json.end());
+        checked = check_gltf(root, name_, ignored_);
+        image_light = image_light_of(root, name_);
     } catch (const json::exception& error) {
         fail("{}: not a glTF file: {}", name_, printable(error.what(), 200));
     }
@@ -88,6 +92,7 @@ GltfFile::GltfFile(const std::filesystem::path& path)
             (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
             ++ignored_["{} node{|s} with a matrix and a placement by parts: the matrix counts (NODE_MATRIX_TRS)"];
     extensions_ = take_extensions(checked, ignored_);
+    extensions_.image_light = std::move(image_light);
     hide_unknown_types(checked);
     take_uris(checked, is_glb ? std::optional(glb.binary.size()) : std::nullopt);
     load(checked.dump(), is_glb ? &glb : nullptr);

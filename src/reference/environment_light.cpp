@@ -13,14 +13,14 @@ using namespace optics;
 /// What of the environment's light comes along a ray; the rest its hit has found by drawing directions to the
 /// environment (Veach and Guibas, Optimally Combining Sampling Techniques, 1995: the balance heuristic).
 real Shader::environment_share(const Vec3& direction, real density) const {
-    if (density == 0 || !context_.samples_environment()) return 1;
+    if (density == 0 || context_.settings.env_mode == EnvironmentMode::open) return 1;
     return density < 0 ? 0 : density / (density + context_.surroundings.density(direction));
 }
 
 /// A ray that brings all of the light sees its mean over the cone: a sun's disc in a curved mirror would be noise. What
 /// is shared must be the same light from both sides.
 real Shader::environment_blur(const Cone& cone, real density) const {
-    if (!context_.samples_environment() || density != 0) return 0;
+    if (context_.settings.env_mode == EnvironmentMode::open || density != 0) return 0;
     // All of a pixel's cone, not a sample's share of it: a sun that fills a part of it is seen by that part.
     return context_.surroundings.blur_of(cone.spread * std::sqrt(real(context_.settings.spp)));
 }

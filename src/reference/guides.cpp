@@ -30,7 +30,7 @@ std::optional<uint32_t> Shader::guiding_branch(const Surface& surface, const Pat
     if (!path.guided || m.unlit || draws_mirrored(m, context_.settings)) return {};
     const PictureSettings& settings = context_.settings;
     const bool lit = settings.shadow && (settings.env_mode == EnvironmentMode::sampled || !context_.lights.empty());
-    if (holds_light(m) && (lit || settings.gi > 0 || settings.ambient)) return {};
+    if (holds_light(m) && (lit || settings.gi > 0 || occludes_sky(settings))) return {};
     const auto shown = [](const Branch& branch) { return branch.traced ? luminance(branch.weight) : 0; };
     const real first = shown(out.reflection), second = out.split.empty() ? shown(out.refraction) : 0;
     if (std::max(first, second) == 0) return {};

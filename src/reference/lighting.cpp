@@ -201,7 +201,9 @@ Vec3 Shader::left_by_shadows(const Lit& at) {
     const PictureSettings& settings = context_.settings;
     const Vec3 sky = scattered(at).front * context_.surroundings.irradiance(s.normal);
     Vec3 all = sky, light = sky;
-    if ((settings.ambient || (context_.samples_environment() && settings.shadow)) && largest(sky) > 0) {
+    if (context_.filters_environment() && occludes_sky(settings)) {
+        light = filtered_sky(at, {sky, Vec3(0)});
+    } else if ((settings.ambient || (context_.samples_environment() && settings.shadow)) && largest(sky) > 0) {
         const Vec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
         const Vec3 direction = above_surface(sampled, s.geometric);
         rays_.ambient++;
@@ -229,10 +231,11 @@ Vec3 Shader::sky_light(const Lit& at) {
     const Optics& m = s.optics;
     auto [front, back] = scattered(at);
     if (largest(m.sheen) > 0) front += m.sheen * (1 - at.seen.coat) * context_.albedos.sheen(s, at.seen.n_v) / pi;
-    const real open = context_.settings.ambient ? 1 : m.occlusion;  // or rays find out
+    const real open = occludes_sky(context_.settings) ? 1 : m.occlusion;  // or rays find out
     front *= open * context_.surroundings.irradiance(s.normal);
     back *= open * context_.surroundings.irradiance(-s.normal);
-    if (!context_.settings.ambient) return front + back;
+    if (!occludes_sky(context_.settings)) return front + back;
+    if (context_.filters_environment()) return filtered_sky(at, {front, back});
     // One cosine-distributed direction per sample: its mean is the sky that the surface really sees.
     const Vec3 sampled = cosine_direction(s.normal, random(at.path, RANDOM_SKY));
     const Vec3 direction = above_surface(sampled, s.geometric);

@@ -252,6 +252,7 @@ void PictureTracer::pass(const Work& work, const RenderContext& context, const V
 
 Picture PictureTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
                               PastPictures* past) const {
+    assert(settings.env_mode != EnvironmentMode::filtered || environment.filtered.levels > 0);
     assert(settings.env_mode != EnvironmentMode::sampled || !environment.distribution.quads.empty());
     const Box box = settings.bounds.value_or(Box{geometry.lower, geometry.upper});
     const Views seen = views(settings, box);

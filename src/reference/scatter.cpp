@@ -20,7 +20,7 @@ Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
 /// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
 /// unless the environment's light is drawn too.
 real Shader::traced_part(real roughness, real metallic) const {
-    if (context_.samples_environment()) return 1;
+    if (context_.samples_environment() || context_.filters_environment()) return 1;
     if (context_.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
     const real x =
         std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
@@ -137,7 +137,7 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
     reflection.weight = share.reflected * below;
     reflection.direction = above_surface(mirrored(path.direction, h), s.geometric);
     reflection.media = meeting.before;
-    reflection.cone = path.cone.reflected(s.curvature);
+    reflection.cone = lobe_cone(path.cone.reflected(s.curvature), roughness, 1);
     reflection.sees_sun = mirror && path.sees_sun;
     reflection.density = reflection_density(s, lobe, path, reflection.direction);
     reflection.traced = is_traced(reflection, path);
@@ -153,8 +153,11 @@ Shader::Scattered Shader::scatter(const Surface& s, const Path& path, const Meet
         refraction.direction = direction.value_or(path.direction);
         if (m.thin && !mirror && sampled) refraction.direction = above_surface(refraction.direction, -s.geometric);
         refraction.media = meeting.behind;
-        refraction.cone =
-            m.thin ? path.cone : path.cone.refracted(s.curvature, relative_index(meeting, s, path.channel));
+        const real eta = relative_index(meeting, s, path.channel);
+        // A microfacet turns what it refracts less than what it mirrors, as Snell's law has it near the normal.
+        const real part = std::abs(1 - 1 / eta) / 2;
+        refraction.cone = m.thin ? lobe_cone(path.cone, roughness, 1)
+                                 : lobe_cone(path.cone.refracted(s.curvature, eta), roughness, part);
         refraction.sees_sun = mirror && path.sees_sun;
         refraction.density = path.density;  // light rays go straight through
         refraction.mirrors = false;
@@ -202,7 +205,7 @@ void Shader::add_coat(const Surface& s, const Path& path, const Meeting& meeting
         coat.weight = Vec3(coat_reflectance(m, std::clamp(glm::dot(view, h), 0.0, 1.0)) * lobe.masking(reflected));
     coat.direction = above_surface(reflected, s.geometric);
     coat.media = meeting.before;
-    coat.cone = path.cone.reflected(s.curvature);
+    coat.cone = lobe_cone(path.cone.reflected(s.curvature), m.coat_roughness, 1);
     coat.sees_sun = mirror && path.sees_sun;
     coat.density = reflection_density(s, lobe, path, coat.direction);
     coat.traced = is_traced(coat, path);

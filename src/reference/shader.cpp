@@ -74,7 +74,7 @@ Vec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& 
     const bool volume = meeting.wall && s.optics.transmits() && !s.optics.thin;
     const Lit at{s, meeting.hit.triangle, path, seen, volume ? meeting.behind : path.media};
     const Branch diffuse = diffuse_branch(at);
-    const Vec3 direct = s.optics.alpha * direct_light(at, !diffuse.traced);
+    const Vec3 direct = s.optics.alpha * direct_light(at, context_.filters_environment() || !diffuse.traced);
     if (!diffuse.traced) return direct;
     rays_.diffuse++;
     return direct + follow(diffuse, s, path, at.triangle, 2);
@@ -84,9 +84,11 @@ Vec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& 
 Vec3 Shader::untraced(const Branch& branch, const Path& path) const {
     if (branch.passes && path.is_straight() && context_.settings.backdrop.kind != Backdrop::Kind::environment)
         return branch.weight * backdrop(branch.direction);
-    const real blur = std::max(branch.blur, environment_blur(branch.cone, branch.density));
-    return branch.weight * environment_share(branch.direction, branch.density) *
-           context_.surroundings.radiance(branch.direction, blur);
+    const Vec3 weight = branch.weight * environment_share(branch.direction, branch.density);
+    const bool filters = context_.filters_environment();
+    if (filters && !branch.sees_sun) return weight * filtered_lobe(branch.direction, branch.cone);
+    const real blur = std::max(filters ? 0 : branch.blur, environment_blur(branch.cone, branch.density));
+    return weight * context_.surroundings.radiance(branch.direction, blur);
 }
 
 /// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
@@ -168,9 +170,10 @@ Vec3 Shader::missed(const Path& path, const Vec3& weight) {
     const bool straight = path.is_straight();
     if (straight) through_ += luminance(weight);
     if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
-    return environment_share(path.direction, path.density) *
-           context_.surroundings.seen(path.direction, environment_blur(path.cone, path.density), path.sees_sun,
-                                      context_.rough_limit);
+    const real share = environment_share(path.direction, path.density);
+    if (context_.filters_environment() && !path.sees_sun) return share * filtered_lobe(path.direction, path.cone);
+    return share * context_.surroundings.seen(path.direction, environment_blur(path.cone, path.density), path.sees_sun,
+                                              context_.rough_limit);
 }
 
 /// Has the path come as far as it is followed, but for what `passes` straight through a blended surface? Diffuse

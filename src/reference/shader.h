@@ -40,9 +40,10 @@ struct RenderContext {
 
     bool sampled() const { return is_sampled(settings); }
     /// Is one lamp with a place drawn for all of them?
-    bool draws_lamps() const { return sampled() && lamps.count > LAMPS_EACH; }
+    bool draws_lamps() const { return samples_lamps(settings) && lamps.count > LAMPS_EACH; }
     bool samples_emitters() const { return peelray::samples_emitters(settings) && !emitters.empty(); }
     bool samples_environment() const { return settings.env_mode == EnvironmentMode::sampled; }
+    bool filters_environment() const { return settings.env_mode == EnvironmentMode::filtered; }
 };
 
 /// How wide the light is that a ray stands for (Akenine-Möller et al., JCGT 2021).
@@ -50,6 +51,8 @@ struct Cone {
     real width = 0;   ///< at the ray's start, world units; < 0: behind a focus
     real spread = 0;  ///< how much wider it gets per world unit
     real width_at(real t) const { return width + t * spread; }
+    /// After a lobe of this alpha.
+    Cone blurred(real alpha) const;
     /// After a surface of this curvature: the mirrored direction turns twice as far as the normal, the refracted one as
     /// Snell's law has it near the normal.
     Cone reflected(real curvature) const { return {width, spread + 2 * curvature * width}; }
@@ -206,7 +209,7 @@ class Shader {
     Vec3 reflectance(const Surface& surface, const Path& path, const Seen& seen, const Vec3& to_light) const;
     Vec3 scattered_light(const Surface& surface, const Path& path, const Meeting& meeting);
     Vec3 direct_light(const Lit& at, bool sky);
-    real radius_of(const Light& light) const { return context_.sampled() ? real(light.radius) : 0; }
+    real radius_of(const Light& light) const { return samples_lamps(context_.settings) ? real(light.radius) : 0; }
     Incidence incidence(const Light& light, uint32_t index, const Lit& at) const;
     /// What the surface would send of a lamp's light, if nothing were in its way.
     struct LampLight {
@@ -231,6 +234,9 @@ class Shader {
     };
     static BothSides scattered(const Lit& at);
     Vec3 sky_light(const Lit& at);
+    Cone lobe_cone(const Cone& cone, real roughness, real part) const;
+    Vec3 filtered_lobe(const Vec3& direction, const Cone& cone) const;
+    Vec3 filtered_sky(const Lit& at, const BothSides& sky);
     Vec3 left_by_shadows(const Lit& at);
     real environment_share(const Vec3& direction, real density) const;
     real environment_blur(const Cone& cone, real density) const;

@@ -11,11 +11,6 @@
 namespace peelray::inline PRECISION {
 namespace {
 
-/// Of a direction in the map, [0, 1]².
-Vec2 place(const Vec3& d) {
-    return {0.5 + std::atan2(d.x, -d.z) / (2 * optics::pi), std::acos(std::clamp(d.y, -1.0, 1.0)) / optics::pi};
-}
-
 /// Takes the first of two ways with the chance `first`; what is left of the random number is one again.
 bool choose_first(real& random, real first) {
     constexpr real below_one = 1 - std::numeric_limits<real>::epsilon();
@@ -25,6 +20,11 @@ bool choose_first(real& random, real first) {
 }
 
 }  // namespace
+
+/// Of a direction in the map, [0, 1]².
+Vec2 Surroundings::place(const Vec3& d) {
+    return {0.5 + std::atan2(d.x, -d.z) / (2 * optics::pi), std::acos(std::clamp(d.y, -1.0, 1.0)) / optics::pi};
+}
 
 Vec3 Surroundings::level(const Vec2& uv, uint32_t level) const {
     size_t offset = 0;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 
+#include "path/filtered_numbers.h"
 #include "reference/real.h"
 #include "scene/environment.h"
 
@@ -19,6 +21,13 @@ class Surroundings {
     real blur_of(real spread) const;
     /// What a ray that hits nothing sees; one that does not see the sun sees nothing brighter than `rough_limit`.
     Vec3 seen(const Vec3& direction, real blur, bool sees_sun, real rough_limit) const;
+    /// What a lobe of this alpha sees around its direction (Environment::filtered, which must not be empty).
+    Vec3 filtered(const Vec3& direction, real alpha, real rough_limit) const;
+    /// The set of directions of a sample.
+    std::span<const FixedDirection> fixed_directions(uint32_t sample) const {
+        const size_t first = size_t(sample % FILTERED_SETS) * FILTERED_DIRECTIONS;
+        return std::span(environment_.filtered.directions).subspan(first, FILTERED_DIRECTIONS);
+    }
     /// What the camera sees of it blurred (Environment::has_blurred).
     Vec3 blurred(const Vec3& direction) const;
     /// Mean over all directions, of the brightest channel.
@@ -41,6 +50,8 @@ class Surroundings {
     struct Cell {
         uint32_t column, row;
     };
+    static Vec2 place(const Vec3& direction);
+    Vec3 filtered_level(const Vec3& direction, uint32_t number) const;
     Vec3 level(const Vec2& uv, uint32_t level) const;
     Vec3 picture(const Vec2& uv, size_t offset, uint32_t width, uint32_t height) const;
     real density_in(const Cell& cell, real probability) const;

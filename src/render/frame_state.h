@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/material.h"
+#include "path/filtered_numbers.h"
 #include "render/bands.h"
 #include "render/camera_view.h"
 #include "render/cost_counter.h"
@@ -46,18 +47,26 @@ struct FrameState {
         const uint32_t lamps = settings.shadow ? all : 0;
         const uint32_t drawn = settings.shadow && emitting() ? 1 : 0;
         if (env_sampled()) return lamps + drawn + (settings.shadow ? 1 : 0);
-        return lamps + drawn + (settings.ambient ? skies : 0);
+        if (!occludes_sky(settings)) return lamps + drawn;
+        return lamps + drawn + (env_filtered() ? FILTERED_DIRECTIONS : skies);
+    }
+    /// How many of them there are as a rule, so that there is room for them at once.
+    uint32_t usual_lights_per_hit() const {
+        const bool many = lights_per_hit() > 0 && env_filtered() && occludes_sky(settings);
+        return many ? FILTERED_DIRECTIONS / 2 : 1;  // those that a surface faces
     }
     /// Is the environment's light found by sampling? Cube maps hold it blurred.
     bool env_sampled() const { return settings.env_mode == EnvironmentMode::sampled && !maps; }
+    /// Is it found without noise, and behind what is in the way of a few directions?
+    bool env_filtered() const { return settings.env_mode == EnvironmentMode::filtered && !maps; }
     /// Are diffuse bounces followed?
     bool indirect() const { return settings.gi > 0 && tracer->traces(); }
     /// Lamps of which each hit draws one; 0: all count.
-    uint32_t drawn_lamps() const { return is_sampled(settings) && !maps ? scene.drawn_lamps() : 0; }
+    uint32_t drawn_lamps() const { return samples_lamps(settings) && !maps ? scene.drawn_lamps() : 0; }
     /// Are lamps seen to have a size?
     bool soft_lamps() const {
         const auto has_size = [](const GpuLight& light) { return light.sine > 0; };
-        return is_sampled(settings) && !maps && std::ranges::any_of(scene.light_list, has_size);
+        return samples_lamps(settings) && !maps && std::ranges::any_of(scene.light_list, has_size);
     }
     /// Is light looked for on emissive triangles?
     bool emitting() const { return scene.emitters() > 0 && !maps && samples_emitters(settings); }

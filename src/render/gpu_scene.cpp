@@ -59,6 +59,15 @@ std::vector<DrawRange> draw_ranges(const Assembly& assembly) {
     return draws;
 }
 
+std::vector<glm::vec4> direction_table(const std::vector<FixedDirection>& directions) {
+    std::vector<glm::vec4> table;
+    for (const FixedDirection& fixed : directions) {
+        table.emplace_back(fixed.direction, 0);
+        table.emplace_back(fixed.light, 0);
+    }
+    return table;
+}
+
 }  // namespace
 
 void check_room(const Device& device, const Scene& scene) {
@@ -81,7 +90,9 @@ void check_room(const Device& device, const Scene& scene) {
 
 EnvironmentLevels levels_on(const Device& device, const Environment& environment) {
     EnvironmentLevels shown{0, environment.width, environment.height, environment.levels};
-    const size_t all = environment.texels.size() + environment.distribution.quads.size();
+    const FilteredEnvironment& filtered = environment.filtered;
+    const size_t all = environment.texels.size() + environment.distribution.quads.size() + filtered.texels.size() +
+                       2 * filtered.directions.size();
     const auto bytes = [&] { return sizeof kTables + (all - shown.first) * sizeof(glm::vec4); };
     while (bytes() > device.limits().maxStorageBufferRange && shown.levels > 1) {
         shown.first += size_t(shown.width) * shown.height;
@@ -135,9 +146,11 @@ void GpuScene::upload_lookups(Commands& commands, const Environment& env, const 
     static_assert(sizeof kTables == TABLES_END * sizeof(glm::vec4));
     const EnvironmentLevels shown = levels_on(device_, env);
     const std::span<const glm::vec4> texels = std::span(env.texels).subspan(shown.first);
-    lookups =
-        Buffer(device_, "tables and environment map",
-               sizeof kTables + (texels.size() + env.distribution.quads.size() + emitters.size()) * sizeof(glm::vec4));
+    const std::vector<glm::vec4> directions = direction_table(env.filtered.directions);
+    lookups = Buffer(device_, "tables and environment map",
+                     sizeof kTables + (texels.size() + env.distribution.quads.size() + emitters.size() +
+                                       env.filtered.texels.size() + directions.size()) *
+                                          sizeof(glm::vec4));
     commands.upload(lookups, std::span<const float>(kTables[0], sizeof kTables / sizeof(float)));
     commands.upload(lookups, texels, sizeof kTables);
     const uint64_t texels_end = sizeof kTables + texels.size() * sizeof(glm::vec4);
@@ -148,6 +161,14 @@ void GpuScene::upload_lookups(Commands& commands, const Environment& env, const 
     emitters_ = uint32_t(emitters.size());
     if (emitters_ > 0)
         commands.upload(lookups, std::span<const glm::vec4>(emitters), first_emitter_ * sizeof(glm::vec4));
+    filtered_first_ = first_emitter_ + emitters_;
+    filtered_directions_ = filtered_first_ + uint32_t(env.filtered.texels.size());
+    filtered_size_ = {env.filtered.width, env.filtered.height};
+    filtered_levels_ = env.filtered.levels;
+    if (filtered_levels_ > 0) {
+        commands.upload(lookups, std::span<const glm::vec4>(env.filtered.texels), filtered_first_ * sizeof(glm::vec4));
+        commands.upload(lookups, std::span<const glm::vec4>(directions), filtered_directions_ * sizeof(glm::vec4));
+    }
     env_depth_ = env.distribution.depth;
     env_is_image_ = env.is_image;
     if (env.is_pyramid) env_texels_ = float(shown.height) / kPi;
@@ -242,6 +263,10 @@ void GpuScene::describe(Frame& frame, bool env_sampled) const {
     frame.env_quads = env_quads_;
     frame.env_depth = env_depth_;
     frame.first_emitter = first_emitter_;
+    frame.filtered_size = filtered_size_;
+    frame.filtered_first = filtered_first_;
+    frame.filtered_levels = filtered_levels_;
+    frame.filtered_directions = filtered_directions_;
     frame.env_texels = env_texels_;
     frame.sun_direction = sun_direction_;
     frame.sun_radiance = sun_radiance_;

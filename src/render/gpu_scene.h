@@ -91,6 +91,8 @@ class GpuScene {
     uint32_t first_placed_ = 0, placed_lamps_ = 0;
     glm::uvec2 env_size_{0};
     uint32_t env_levels_ = 0, env_quads_ = 0, env_depth_ = 0, first_emitter_ = 0, emitters_ = 0, blurred_first_ = 0;
+    glm::uvec2 filtered_size_{0};
+    uint32_t filtered_first_ = 0, filtered_levels_ = 0, filtered_directions_ = 0;
     bool env_is_image_ = false;
     float env_texels_ = 0;
     float sun_cosine_ = 2, rough_limit_ = 1e30f;

@@ -68,7 +68,7 @@ void PathQueues::allocate_media() {
 }
 
 void PathQueues::prepare(const Needs& needs) {
-    const auto [pixels, levels, usual, branching, lights, layered] = needs;
+    const auto [pixels, levels, usual, branching, lights, usual_lights, layered] = needs;
     layered_ = layered;
     // One level more than is traced: the deepest level's shader binds a next level that it never writes.
     levels_.resize(std::max<size_t>(levels_.size(), levels + 1));
@@ -80,7 +80,7 @@ void PathQueues::prepare(const Needs& needs) {
                                                        : pixels / 4));
     allocate(levels_[levels], levels, 64);
     // One ray a pixel is seldom exceeded; who has many lights finds out.
-    allocate_lights(lights > 0 ? std::max(1024u, pixels) : 64);
+    allocate_lights(lights > 0 ? std::max<uint64_t>(1024, uint64_t(pixels) * usual_lights) : 64);
     if (layered) keep_camera_rays();
     allocate_media();
 }

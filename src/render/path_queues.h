@@ -33,12 +33,13 @@ class PathQueues {
 
     /// What there is to be room for.
     struct Needs {
-        uint32_t pixels = 0;     ///< camera rays
-        uint32_t levels = 1;     ///< in all
-        uint32_t usual = 1;      ///< of them those that many rays reach; beyond, there are only few as a rule
-        bool branching = false;  ///< hits may start two rays
-        uint32_t lights = 0;     ///< shadow rays that a hit may start
-        bool layered = false;    ///< media may overlap; level 0's rays are then kept as well
+        uint32_t pixels = 0;        ///< camera rays
+        uint32_t levels = 1;        ///< in all
+        uint32_t usual = 1;         ///< of them those that many rays reach; beyond, there are only few as a rule
+        bool branching = false;     ///< hits may start two rays
+        uint32_t lights = 0;        ///< shadow rays that a hit may start
+        uint32_t usual_lights = 1;  ///< how many of them there are as a rule
+        bool layered = false;       ///< media may overlap; level 0's rays are then kept as well
     };
     void prepare(const Needs& needs);
 

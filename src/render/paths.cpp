@@ -5,6 +5,11 @@
 namespace peelray {
 namespace {
 
+const char* scatter_name(bool filtered, bool drawn) {
+    if (filtered) return drawn ? "scatter_filtered_drawn" : "scatter_filtered";
+    return drawn ? "scatter_drawn" : "scatter";
+}
+
 void record_scatter(FrameState& f, const LevelParams& p) {
     PathQueues& queues = f.queues;
     const GpuScene& scene = f.scene;
@@ -33,22 +38,22 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           Binding::if_used("next_media", next.media),
                           Binding::if_used("shadow_media", queues.lights().media)});
     // Cones also filter what mirrors show of the environment.
-    const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() ? MATERIALS_FILTERED : 0);
+    const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() || f.env_filtered() ? MATERIALS_FILTERED : 0);
     // A GPU is faster where the compiler knows; a CPU would compile for seconds once more.
     const uint32_t sampled = f.constants.effects & EFFECT_SAMPLED ? 1 : 0;
     std::vector<Constant> constants{{"camera", camera},
                                     {"by_number", camera && f.view.by_number()},
                                     {"layered", layered},
-                                    {"sampled", f.device.info().kind == "CPU" ? 2u : sampled},
                                     {"material_kinds", kinds}};
     const bool drawn = f.env_sampled() || f.indirect() || f.emitting() || f.drawn_lamps() > 0 || f.soft_lamps();
     if (drawn)
-        constants.insert(constants.end(), {{"env_sampled", f.env_sampled()},
-                                           {"indirect", f.indirect()},
+        constants.insert(constants.end(), {{"indirect", f.indirect()},
                                            {"emitting", f.emitting()},
                                            {"many_lamps", f.drawn_lamps() > 0},
                                            {"soft_lamps", f.soft_lamps()}});
-    const Pass& pass = f.device.pass(drawn ? "scatter_drawn" : "scatter", constants);
+    if (!f.env_filtered()) constants.push_back({"sampled", f.device.info().kind == "CPU" ? 2u : sampled});
+    if (drawn && !f.env_filtered()) constants.push_back({"env_sampled", f.env_sampled()});
+    const Pass& pass = f.device.pass(scatter_name(f.env_filtered(), drawn), constants);
     if (p.level == 0)
         f.commands.run(pass, bindings, p, groups_for(p.capacity, 64));
     else

@@ -74,7 +74,7 @@ void describe_view(Frame& frame, const View& view, uint32_t height, uint32_t sam
 /// What is traced or, with `maps`, looked up; in maps nobody sees whether the sky is hidden.
 uint32_t effects_of(const PictureSettings& settings, bool maps) {
     return (settings.reflection ? EFFECT_REFLECTION : 0u) | (settings.refraction ? EFFECT_REFRACTION : 0u) |
-           (settings.shadow ? EFFECT_SHADOW : 0u) | (settings.ambient && !maps ? EFFECT_AMBIENT : 0u);
+           (settings.shadow ? EFFECT_SHADOW : 0u) | (occludes_sky(settings) && !maps ? EFFECT_AMBIENT : 0u);
 }
 
 }  // namespace
@@ -229,7 +229,7 @@ void Renderer::Impl::prepare_queues() {
     const uint32_t face = f.maps ? f.maps->face() : 0;
     f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1,
                       f.settings.bounces + f.settings.gi + 1, f.scene.splits || f.indirect(), f.lights_per_hit(),
-                      f.layered()});
+                      f.usual_lights_per_hit(), f.layered()});
     if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
 }
 

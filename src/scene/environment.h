@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/filtered_environment.h"
 #include "scene/light_distribution.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,7 @@ struct Environment {
     bool is_image = false;      ///< of which `lights` stand for a part; else they add to the texels
     bool is_pyramid = false;    ///< its levels are means of the one before: what a wider ray sees
     EnvironmentDistribution distribution;  ///< of the texels; empty unless EnvironmentMode::sampled
+    FilteredEnvironment filtered;          ///< empty unless EnvironmentMode::filtered
     bool has_blurred = false;  ///< BLURRED_WIDTH·BLURRED_HEIGHT texels more, see add_blurred(), follow the levels
 
     /// Texels of all levels: where the blurred picture begins, if there is one.

@@ -144,19 +144,29 @@ inline float variance_of_mean(double squared_deviations, uint32_t samples) {
     return samples < 2 ? 0 : float(squared_deviations / (double(samples) * (samples - 1)));
 }
 
+/// Are lamps with a size and emissive triangles looked for at random?
+inline bool samples_lamps(const PictureSettings& settings) {
+    return settings.spp > 1 || settings.env_mode == EnvironmentMode::sampled;
+}
+
 /// Do samples of rough lobes, rather than their means, make the picture?
 inline bool is_sampled(const PictureSettings& settings) {
-    return settings.spp > 1 || settings.env_mode == EnvironmentMode::sampled;
+    return samples_lamps(settings) && settings.env_mode != EnvironmentMode::filtered;
+}
+
+/// Do rays find out how much of the sky a surface sees?
+inline bool occludes_sky(const PictureSettings& settings) {
+    return settings.ambient || (settings.shadow && settings.env_mode == EnvironmentMode::filtered);
 }
 
 /// Do emissive triangles light the scene? Without samples their light would be noise.
 inline bool samples_emitters(const PictureSettings& settings) {
-    return is_sampled(settings) || settings.gi > 0;
+    return samples_lamps(settings) || settings.gi > 0;
 }
 
 /// Is any light drawn at random, so that a picture of few samples is noisy?
 inline bool draws_at_random(const PictureSettings& settings) {
-    return is_sampled(settings) || settings.gi > 0 || settings.ambient;
+    return samples_emitters(settings) || (settings.ambient && settings.env_mode != EnvironmentMode::filtered);
 }
 
 /// Is such light smoothed? What is looked up in cube maps is not drawn.

@@ -10,10 +10,12 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/cube_light.h"
 #include "scene/generated.h"
 
 namespace peelray {
@@ -263,6 +265,7 @@ struct Scene {
     std::vector<Camera> cameras;  ///< in world space, by number; of equal ones in the order of the nodes that show them
     std::vector<Camera> unplaced_cameras;  ///< by number; no node shows them, so that they have a lens but no place
     std::vector<Light> lights;             ///< in world space
+    std::optional<CubeLight> cube_light;   ///< what surrounds it, where nobody asks for something else
     bool outdoors = false;                 ///< where nothing else lights it, a clear sky does; otherwise a studio
     std::vector<Skin> skins;
     std::vector<Animation> animations;

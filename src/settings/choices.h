@@ -112,12 +112,14 @@ constexpr auto names_of(Tonemap) {
 
 /// How surfaces that are no mirrors find the environment's light.
 enum class EnvironmentMode : uint8_t {
-    sampled,  ///< rays in directions drawn by its brightness and by the surface's lobes: unbiased
-    open,     ///< smooth approximations without noise, as if nothing stood in the way
+    sampled,   ///< rays in directions drawn by its brightness and by the surface's lobes: unbiased
+    open,      ///< smooth approximations without noise, as if nothing stood in the way
+    filtered,  ///< such approximations, and rays of fixed directions find what stands in the way: no noise either
 };
 constexpr auto names_of(EnvironmentMode) {
-    return std::to_array<Named<EnvironmentMode>>(
-        {{EnvironmentMode::sampled, "sampled"}, {EnvironmentMode::open, "open"}});
+    return std::to_array<Named<EnvironmentMode>>({{EnvironmentMode::sampled, "sampled"},
+                                                  {EnvironmentMode::open, "open"},
+                                                  {EnvironmentMode::filtered, "filtered"}});
 }
 
 /// What the camera sees of the environment where nothing is before it.

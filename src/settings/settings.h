@@ -156,7 +156,9 @@ inline void add_light(SettingList& list, LightArguments& a) {
                 {.name = "env-mode",
                  .group = group,
                  .help = "how the environment lights what is no mirror: by sampling where it is bright, behind what is "
-                         "in the way; or as if nothing were, without noise; auto: images and the studio are sampled",
+                         "in the way; or (open) as if nothing were, without noise; or (filtered), without noise "
+                         "either, roughly behind what is in the way of a few fixed directions: a preview; auto: images "
+                         "and the studio are sampled, others open",
                  .none = "auto"});
     add_setting(list, a.light_radius,
                 {.name = "light-radius",

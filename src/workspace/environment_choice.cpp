@@ -15,6 +15,7 @@ Environment own_environment(const LightArguments& a, const Scene& scene, const N
         return image_environment(image.width, image.height, std::move(image.pixels));
     }
     if (a.is_lit_by_background()) return color_environment(*a.background->color);
+    if (scene.cube_light && !a.sky) return cube_environment(*scene.cube_light);
     // A scene that brings its own lights gets a sky without a sun's worth of extra light only if asked for.
     if (a.sky || (scene.lights.empty() && scene.outdoors)) return sky_environment(default_sun_direction());
     return scene.lights.empty() ? studio_environment() : color_environment(glm::vec3(0.05f));

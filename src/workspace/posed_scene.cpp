@@ -67,6 +67,7 @@ PosedScene::PosedScene(const PictureArguments& settings, const Notes& notes) : s
     environment_ = choose_environment(settings, *scene_, notes);
     env_mode_ = settings.env_mode.value_or(environment_.is_image ? EnvironmentMode::sampled : EnvironmentMode::open);
     if (env_mode_ == EnvironmentMode::sampled) environment_.distribution = EnvironmentDistribution(environment_);
+    if (env_mode_ == EnvironmentMode::filtered) environment_.filtered = FilteredEnvironment(environment_);
 }
 
 const Geometry& PosedScene::geometry() {

@@ -204,7 +204,7 @@ Renderer& Workspace::renderer_for(const RenderSettings& settings) {
 /// Says so, once, where a floor that is there for shadows can have none.
 void Workspace::note_uncaught(const PictureSettings& settings) {
     const bool lamps = !scene_.moment().lights.empty() || !scene_.environment().lights.empty();
-    const bool sky = settings.ambient || (settings.env_mode == EnvironmentMode::sampled && settings.shadow);
+    const bool sky = occludes_sky(settings) || (settings.env_mode == EnvironmentMode::sampled && settings.shadow);
     if (!settings_.shadow_catcher || sky || (lamps && settings.shadow)) return;
     if (std::exchange(noted_.uncaught, true)) return;
     note(notes_, fmt::format("nothing that casts shadows lights the floor of {}: {}", setting::shadow_catcher,

@@ -1,9 +1,13 @@
 // Scenes as settings open them, without a device.
 #include "workspace/posed_scene.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
 
@@ -107,6 +111,61 @@ TEST(PosedScene, NotesGoToWhoeverListens) {
     EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "");
     EXPECT_NE(std::find(notes.begin(), notes.end(), "the scene has no animation: everything stands at rest"),
               notes.end());
+}
+
+/// A triangle in a cube of light of its own: red from +x, elsewhere black.
+std::string scene_in_red_light(const std::filesystem::path& folder) {
+    const auto write = [&](const char* name, const std::string& bytes) {
+        std::ofstream(folder / name, std::ios::binary) << bytes;
+    };
+    std::string header(18, '\0');  // TGA, one texel of 24 bits
+    header[2] = 2;
+    header[12] = header[14] = 1;
+    header[16] = 24;
+    write("red.tga", header + std::string("\0\0\xff", 3));
+    write("black.tga", header + std::string(3, '\0'));
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    write("corners.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+    write("lit.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXT_lights_image_based"],
+        "scenes": [{"nodes": [0], "extensions": {"EXT_lights_image_based": {"light": 0}}}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"byteLength": 36, "uri": "corners.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+        "images": [{"uri": "red.tga"}, {"uri": "black.tga"}],
+        "extensions": {"EXT_lights_image_based": {"lights": [{"intensity": 2, "specularImageSize": 1,
+            "irradianceCoefficients": [[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]],
+            "specularImages": [[0, 1, 1, 1, 1, 1]]}]}}})");
+    return (folder / "lit.gltf").string();
+}
+
+TEST(PosedScene, StandsInTheLightOfItsFile) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / fmt::format("peelray_posed_{}", getpid());
+    std::filesystem::create_directories(folder);
+    const std::string file = scene_in_red_light(folder);
+    PictureArguments settings = settings_of_scene(file.c_str());
+    // What comes from a direction in the horizontal plane.
+    const auto red_from = [&](float u) {
+        const PosedScene posed(settings);
+        const Environment& e = posed.environment();
+        return e.texels[size_t(e.height / 2) * e.width + size_t(u * float(e.width))].x;
+    };
+    EXPECT_NEAR(red_from(0.75f), 2, 1e-3) << "+x";
+    EXPECT_EQ(red_from(0.25f), 0) << "-x";
+    EXPECT_EQ(PosedScene(settings).env_mode(), EnvironmentMode::sampled) << "it is an image";
+    settings.env_rotation = 90;
+    settings.env_intensity = 3;
+    EXPECT_NEAR(red_from(0.5f), 6, 1e-2) << "turned to -z";
+    EXPECT_EQ(red_from(0.75f), 0);
+    settings.env_mode = EnvironmentMode::filtered;
+    EXPECT_FALSE(PosedScene(settings).environment().filtered.texels.empty());
+    settings = settings_of_scene(file.c_str());
+    settings.sky = true;
+    EXPECT_FALSE(PosedScene(settings).environment().is_image);
+    settings.sky = false;
+    settings.background = Background{glm::vec3(0.25f)};
+    EXPECT_EQ(PosedScene(settings).environment().texels[0].z, 0.25f);
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace
