@@ -259,6 +259,7 @@ Json picture_json(const PictureStats& stats) {
     json["build_ms"] = s.build_ms;
     for (const PassTime& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["rays"] = rays_json(stats.rays);
+    if (stats.rays.photons > 0) json["photons"] = {{"sent", stats.rays.photons}, {"kept", stats.rays.photons_kept}};
     if (stats.by_cpu())
         json["hit"] = s.tracer == Tracer::cpu ? "single" : "double";
     else
