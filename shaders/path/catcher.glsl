@@ -46,7 +46,9 @@ void emitCaught(uint slot, uint end, Surface s, vec3 view, vec3 share, MediaStac
         for (uint k = 0u; k < frame[0].all_lights; k++) {
             vec3 direction;
             const vec3 light = arrivingLight(k, s, m, shade, view, from, seed, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(k, s, direction, false), before, from, light * share);
+            if (light == vec3(0)) continue;
+            const bool sends = k < frame[0].lights + frame[0].drawn_lamps;  // photons
+            emitLight(slot++, lampRay(k, s, direction, false), before, sends ? lampFrom(from) : from, light * share);
         }
     }
     if (env_filtered && catchesSky() && sky != vec3(0)) emitSky(slot, end - slot, s, shade, from, sky, vec3(0), share, before, before);

@@ -2,6 +2,8 @@
 #ifndef PEELRAY_LIGHTING_GLSL
 #define PEELRAY_LIGHTING_GLSL
 
+#include "caustics/followed.glsl"
+#include "path/ball.glsl"
 #include "path/frame.h"
 #include "path/interface.glsl"
 #include "path/lobe.glsl"
@@ -12,17 +14,6 @@ struct Incidence {
     vec3 irradiance;  ///< on a surface that faces it, if nothing is in its way
     vec3 direction;   ///< to it
 };
-
-/// A direction to a ball, or a disc in the sky, whose half angle has this sine; `share`: of the irradiance that would arrive if all came
-/// from its centre, times the cosine's mean. Shirley, Wang and Zimmerman 1996; `random` in [0, 1).
-vec3 directionToBall(vec3 centre, float sine, vec2 random, out float share) {
-    const float farthest = sqrt(max(0.0, 1.0 - sine * sine));
-    share = 2.0 / (1.0 + farthest);  // the cone's solid angle over that of its projection, which lights what faces it
-    const float off = random.x * sine * sine / (1.0 + farthest), flat_part = sqrt(off * (2.0 - off)), phi = 2.0 * PI * random.y;
-    vec3 t, b;
-    tangents(centre, t, b);
-    return normalize(centre * (1.0 - off) + t * (flat_part * cos(phi)) + b * (flat_part * sin(phi)));
-}
 
 /// `soft`: from a point of the light that `random` chooses, else from its centre.
 Incidence lightAt(GpuLight light, vec3 position, bool soft, vec2 random) {
@@ -126,6 +117,11 @@ vec3 coatHighlight(Surface s, Material m, vec3 view, vec3 to_light, vec3 h) {
            highlight(roundLobe(s.coat_normal, m.coat_roughness), view, to_light, h);
 }
 
+// True: what lobes mirror that photons follow is left out, for these bring it.
+#ifndef LOBES_BROUGHT
+#define LOBES_BROUGHT false
+#endif
+
 /// Reflected share of light from `to_light`, times the cosine; of what seeps through the share of light from behind.
 vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
     const float n_l = dot(s.normal, to_light);
@@ -135,11 +131,13 @@ vec3 reflectance(Surface s, Material m, Shade shade, vec3 view, vec3 to_light) {
     vec3 result = vec3(0);
     if (n_l > 0.0) {
         const vec3 dielectric = interfaceReflectance(m, interfaceInAir(m, s.front, CHANNEL_MIDDLE), clamp(dot(view, h), 0.0, 1.0));
-        result = (1.0 - largest(dielectric)) * shade.diffuse * n_l + baseHighlight(s, m, shade, view, to_light, h);
+        result = (1.0 - largest(dielectric)) * shade.diffuse * n_l;
+        if (!LOBES_BROUGHT || !photonsFollow(m, shade.lobe.roughness)) result += baseHighlight(s, m, shade, view, to_light, h);
         if (sheened) result = result * min(shade.below_sheen, belowSheen(m, n_l)) + sheenReflectance(s, m, view, to_light, h);
     }
     if (!coated || m.clearcoat == 0.0) return result;
-    return result * shade.below_coat + coatHighlight(s, m, view, to_light, h);
+    result *= shade.below_coat;
+    return LOBES_BROUGHT && photonsFollow(m.coat_roughness, 0.0) ? result : result + coatHighlight(s, m, view, to_light, h);
 }
 
 /// The same of the environment's light by all for which no ray is traced: what is scattered, the sheen, and what seeps through. As of the

@@ -70,7 +70,9 @@ SHARED_SIZE(PathBranches, 48);
 #define QUEUE_CUT_REFRACTION 25u
 #define QUEUE_CROWDED 26u  // rays in more media than a stack holds
 #define QUEUE_DIFFUSE 27u
-#define QUEUE_COUNTERS 28u
+#define QUEUE_PHOTONS 28u  // that have come to rest
+#define QUEUE_PHOTON_RAYS 29u  // as many as there are photons
+#define QUEUE_COUNTERS 30u
 /// After the counters: three workgroup counts for each level, then of the view's blocks and of the shadow rays.
 #define QUEUE_GROUPS QUEUE_COUNTERS
 #define QUEUE_GROUPS_VIEW 17u
@@ -78,6 +80,13 @@ SHARED_SIZE(PathBranches, 48);
 /// Then as many rays, for launching them: three each.
 #define QUEUE_LAUNCHES (QUEUE_GROUPS + 3u * 19u)
 #define QUEUE_WORDS (QUEUE_LAUNCHES + 3u * 19u)
+
+/// Photons that lamps send (src/render/photons.h): none, by mirrors alone, also through glass.
+#define PHOTONS_BY_MIRRORS 1u
+#define PHOTONS_THROUGH_GLASS 2u
+/// In the instance of a surface that a shadow ray starts on: glass is as opaque to it as anything.
+#define SHADOW_OPAQUE_GLASS 0x80000000u
+
 #define OVERFLOW_PATHS 1u  // a level's rays
 #define OVERFLOW_VIEW 2u   // blocks
 #define OVERFLOW_LIGHT 4u  // shadow rays

@@ -26,7 +26,11 @@ layout(constant_id = 4) const bool indirect = false;     // diffuse bounces are 
 layout(constant_id = 5) const bool emitting = false;     // light is looked for on emissive triangles
 layout(constant_id = 6) const bool many_lamps = false;   // one of them is drawn
 layout(constant_id = 8) const bool soft_lamps = false;   // some have a size, and lobes are sampled
+layout(constant_id = 9) const uint photons = 0u;         // PHOTONS_*: that lamps send
+bool after_scattering = false;                           // the thread's hit is seen by what scatters, and photons bring what is mirrored there
+#define LOBES_BROUGHT after_scattering
 #else
+const uint photons = 0u;
 #ifndef SCATTER_FILTERED
 const bool env_sampled = false;
 #endif
@@ -147,23 +151,11 @@ Ray lightRay(Surface s, vec3 direction, bool seeps) {
     return seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
 }
 
-/// The same to light `index`: to where the ray meets its ball.
-Ray lampRay(uint index, Surface s, vec3 direction, bool seeps) {
-    Ray ray = lightRay(s, direction, seeps);
-    if (lights[index].kind == 0u) return ray;
-    const vec3 centre = lights[index].position - ray.origin;
-    const float radius = soft_lamps ? lights[index].sine : 0.0, along = dot(centre, direction);
-    ray.tmax = along - sqrt(max(0.0, radius * radius - (dot(centre, centre) - along * along)));
-    return ray;
-}
+#include "path/light_rays.glsl"
 
-/// A ray to the sky in front of the surface or behind it. One cosine-distributed direction per sample: its mean is the sky that the
-/// surface really sees.
-Ray skyRay(Surface s, uint seed, bool seeps) {
-    const vec3 sampled = cosineDirection(s.normal, randomAt(seed, RANDOM_SKY));
-    const vec3 direction = aboveSurface(sampled, s.geometric);
-    const float infinity = uintBitsToFloat(0x7f800000u);
-    return seeps ? leavingRay(s, s.position, -direction, infinity) : leavingRay(s, s.shadow_start, direction, infinity);
+/// The surface that a shadow ray to a lamp starts on; glass is opaque to the ray where photons go through it.
+SurfaceId lampFrom(SurfaceId from) {
+    return SurfaceId(photons == PHOTONS_THROUGH_GLASS ? from.instance | SHADOW_OPAQUE_GLASS : from.instance, from.triangle);
 }
 
 void emitLight(uint index, Ray ray, MediaStack stack, SurfaceId from, vec3 light) {
@@ -264,11 +256,11 @@ void emitLights(uint slot, uint end, Surface s, Material m, vec3 view, vec3 shar
             const uint index = lampIndex(k);
             const vec3 light = arrivingLight(index, s, m, shade, view, from, seed, direction);
             const bool seeps = lightSeeps(s, shade, direction);
-            if (light != vec3(0)) emitLight(slot++, lampRay(index, s, direction, seeps), seeps ? behind : before, from, light * share);
+            if (light != vec3(0)) emitLight(slot++, lampRay(index, s, direction, seeps), seeps ? behind : before, lampFrom(from), light * share);
         }
         if (many_lamps && found.lamp.light != vec3(0)) {
             const bool seeps = lightSeeps(s, shade, found.lamp.direction);
-            emitLight(slot++, lampRay(found.lamp_index, s, found.lamp.direction, seeps), seeps ? behind : before, from, found.lamp.light * share);
+            emitLight(slot++, lampRay(found.lamp_index, s, found.lamp.direction, seeps), seeps ? behind : before, lampFrom(from), found.lamp.light * share);
         }
         if (env_sampled && found.environment.light != vec3(0)) {
             const bool seeps = lightSeeps(s, shade, found.environment.direction);
@@ -374,6 +366,9 @@ bool passesUntraced(Branch second) { return blended && !second.traced && largest
 /// Shades what was hit, and counts the rays that it needs for the workgroup.
 void shadeHit(uint i, Ray ray, Hit hit, inout RayState state, inout Scattering c) {
     c.node.flags = NODE_SURFACE;
+#ifdef SCATTER_DRAWN
+    after_scattering = photons != 0u && state.scattered > 0u;
+#endif
     const vec2 cone = coneAt(unpackCone(state.cone), hit.t);
     c.surface = surfaceAt(hit.instance, hit.triangle, vec2(hit.u, hit.v), ray.direction, cone.x);
     const uint channel = channelOf(state.medium);
@@ -484,6 +479,7 @@ void main() {
             if (dispersive && c.refraction.traced && c.refraction.dispersed) c.node.flags |= NODE_DISPERSED;
             emitBranches(i, c, state);
         }
+        if (catching && photons != 0u && (c.node.flags & NODE_CATCHER) != 0u) branches[i].weight2 = c.light_share;  // for photon_gather
         if (c.light_rays > 0u) {
             c.node.first_light = group_first_light + c.light_slot;
             c.node.flags |= c.light_rays;

@@ -17,9 +17,9 @@ struct Setting {
 /// Those that code below the table has reason to name.
 namespace setting {
 inline constexpr Setting animation{"animation"}, background{"background"}, batch{"batch"}, block{"block"},
-    bounces{"bounces"}, builder{"builder"}, camera{"camera"}, clamp{"clamp"}, depth{"depth"}, device{"device"},
-    double_sided{"double-sided"}, effects{"effects"}, env_visible{"env-visible"}, eye{"eye"}, fov{"fov"}, gi{"gi"},
-    hit{"hit"}, ldc{"ldc"}, look{"look"}, noise_target{"noise-target"}, routing{"routing"},
+    bounces{"bounces"}, builder{"builder"}, camera{"camera"}, caustics{"caustics"}, clamp{"clamp"}, depth{"depth"},
+    device{"device"}, double_sided{"double-sided"}, effects{"effects"}, env_visible{"env-visible"}, eye{"eye"},
+    fov{"fov"}, gi{"gi"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, noise_target{"noise-target"}, routing{"routing"},
     shadow_catcher{"shadow-catcher"}, size{"size"}, spp{"spp"}, time{"time"}, time_limit{"time-limit"},
     tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
     variant{"variant"}, visibility{"visibility"};

@@ -260,6 +260,7 @@ Json picture_json(const PictureStats& stats) {
     for (const PassTime& pass : s.passes) json["passes"].push_back({{"name", pass.name}, {"ms", pass.ms}});
     json["rays"] = rays_json(stats.rays);
     if (stats.warm_up_pictures > 0) json["warm_up"] = {{"frames", stats.warm_up_pictures}, {"ms", stats.warm_up_ms}};
+    if (stats.rays.photons > 0) json["photons"] = {{"sent", stats.rays.photons}, {"kept", stats.rays.photons_kept}};
     if (stats.by_cpu())
         json["hit"] = s.tracer == Tracer::cpu ? "single" : "double";
     else

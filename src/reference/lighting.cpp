@@ -69,7 +69,7 @@ Vec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& seen, c
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
         share = diffuse * (1 - m.behind) * (1 - largest(fresnel.dielectric)) * m.base_color * n_l;
-        share += specular(s, path, fresnel, seen.n_v, to_light);
+        if (!photons_bring_lobe(m, path)) share += specular(s, path, fresnel, seen.n_v, to_light);
         if (largest(m.sheen) > 0) {
             share *= std::min(seen.sheen, below_sheen(s, n_l));
             share += m.sheen * sheen::lobe(sheen::alpha_of(m.sheen_roughness), glm::dot(s.normal, half),
@@ -77,7 +77,9 @@ Vec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& seen, c
         }
     }
     if (m.clearcoat == 0) return share;
-    return share * (1 - seen.coat) + coat_reflectance(m, v_h) * highlight(coat_lobe(s), view, to_light);
+    share *= 1 - seen.coat;
+    if (photons_bring_coat(m, path)) return share;
+    return share + coat_reflectance(m, v_h) * highlight(coat_lobe(s), view, to_light);
 }
 
 /// `sky`: that of the environment where no direction to it is drawn, which else a diffuse ray brings.
@@ -103,7 +105,8 @@ Shader::LampLight Shader::lamp_light(uint32_t index, const Lit& at) const {
 
 Vec3 Shader::lamp_visibility(const LampLight& found, const Lit& at) {
     const Start start = start_to(at, found.direction);
-    return arriving(at, start, found.direction, reach(context_.lights[found.index], start.point, found.direction));
+    return arriving(at, start, found.direction, reach(context_.lights[found.index], start.point, found.direction),
+                    context_.glass_is_opaque);
 }
 
 /// One of many lamps for all: of some that are tried, one in proportion to what each would bring over how likely it was
@@ -186,11 +189,12 @@ bool Shader::hides_itself(const Lit& at, const Vec3& direction) const {
 }
 
 /// Share of the light that arrives from as far away.
-Vec3 Shader::arriving(const Lit& at, const Start& start, const Vec3& direction, real distance) {
+Vec3 Shader::arriving(const Lit& at, const Start& start, const Vec3& direction, real distance, bool opaque_glass) {
     if (!context_.settings.shadow) return Vec3(1);
     if (hides_itself(at, direction)) return Vec3(0);
     rays_.shadow++;
-    return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media);
+    return visibility(start.point, direction, distance, at.triangle, start.from_behind ? at.behind : at.path.media,
+                      opaque_glass);
 }
 
 /// Of a surface that is to show nothing but shadows: the share of its light that arrives, of all lamps, also those that
@@ -217,8 +221,10 @@ Vec3 Shader::left_by_shadows(const Lit& at) {
         if (reflected == Vec3(0)) continue;
         const Start start = start_to(at, direction);
         all += reflected;
-        light += reflected * arriving(at, start, direction, reach(lamp, start.point, direction));
+        light += reflected * arriving(at, start, direction, reach(lamp, start.point, direction),
+                                      context_.glass_is_opaque && i < context_.lights.size());
     }
+    light += caustic_light(at);
     Vec3 left(1);
     for (int c = 0; c < 3; c++)
         if (all[c] > 0) left[c] = light[c] / all[c];
@@ -251,7 +257,8 @@ Vec3 Shader::sky_light(const Lit& at) {
 }
 
 /// Share of the light that arrives from `distance` away: 0 or 1, or the tint of the glass in between.
-Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media) const {
+Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media,
+                        bool opaque_glass) const {
     Vec3 share(1);
     uint32_t skip = triangle;
     real from = 0;
@@ -264,9 +271,10 @@ Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance,
         if (!hit.hit()) return share;
         const Surface s = context_.surfaces.at(hit.triangle, hit.u, hit.v, direction);
         const Optics& m = s.optics;
-        if (!m.transmits() && m.alpha == 1) return Vec3(0);
+        if ((opaque_glass || !m.transmits()) && m.alpha == 1) return Vec3(0);
         const real cosine = std::clamp(-glm::dot(direction, s.normal), 0.0, 1.0);
-        const Vec3 tint = (1.0 - reflectance_at(meeting, s, cosine, Channel::green).dielectric) * m.tint();
+        Vec3 tint = (1.0 - reflectance_at(meeting, s, cosine, Channel::green).dielectric) * m.tint();
+        if (opaque_glass) tint = Vec3(0);
         share *= glm::mix(Vec3(1), tint, m.alpha) * meeting.beside;
         // Light goes straight on: refraction would make it miss the lamp. Volumes absorb what crosses them.
         share *= transmittance(meeting.wall ? meeting.from : meeting.before.counting(context_.media), hit.t - from);

@@ -20,6 +20,7 @@ static void check_settings(const PictureSettings& s) {
              setting::size);
     check_limits(kBounceLimits, setting::bounces, s.bounces);
     check_limits(kBounceLimits, setting::gi, s.gi);
+    check_limits(kPhotonLimits, setting::caustics, s.caustics);
     check_limits(kSampleLimits, setting::spp, s.spp);
 }
 

@@ -13,6 +13,7 @@
 
 #include "reference/moment_before.h"
 #include "reference/optics.h"
+#include "reference/photon_flight.h"
 #include "reference/sample_sums.h"
 #include "reference/shader.h"
 
@@ -132,6 +133,8 @@ struct PictureTracer : PathTracer::Impl {
                    const std::function<void(double)>& progress) const;
     void pass(const Work& work, const RenderContext& context, const Views& views,
               const std::function<void(double)>& progress, unsigned threads) const;
+    void caustic_pass(const Work& work, RenderContext context, const PhotonPlan& plan, const Views& views,
+                      const std::function<void(double)>& progress, unsigned threads) const;
     Picture render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
                    PastPictures* past) const override;
 };
@@ -250,6 +253,25 @@ void PictureTracer::pass(const Work& work, const RenderContext& context, const V
     if (failure) std::rethrow_exception(failure);
 }
 
+/// Sample by sample, each with photons of its own.
+void PictureTracer::caustic_pass(const Work& work, RenderContext context, const PhotonPlan& plan, const Views& views,
+                                 const std::function<void(double)>& progress, unsigned threads) const {
+    RenderContext flying = context;
+    flying.is_photon = true;
+    context.glass_is_opaque = plan.through_glass;
+    const uint32_t samples = work.end_sample - work.first_sample;
+    for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
+        const PhotonPass photons = photon_pass(plan, context.settings, sample);
+        const PhotonTree tree(fly_photons(flying, plan, photons), real(photons.radius));
+        context.photons = &tree;
+        work.picture.rays.photons += plan.photons;
+        work.picture.rays.photons_kept += tree.size();
+        std::function<void(double)> report;
+        if (progress) report = [&](double share) { progress((sample - work.first_sample + share) / samples); };
+        pass({work.picture, work.sums, sample, sample + 1}, context, views, report, threads);
+    }
+}
+
 Picture PictureTracer::render(const PictureSettings& settings, const PictureWatch& watch, unsigned threads,
                               PastPictures* past) const {
     assert(settings.env_mode != EnvironmentMode::filtered || environment.filtered.levels > 0);
@@ -271,6 +293,8 @@ Picture PictureTracer::render(const PictureSettings& settings, const PictureWatc
                                 media_around(settings.camera),
                                 has_blended,
                                 is_temporal(settings) ? &*seen.before : nullptr};
+    PhotonPlan plan;
+    if (settings.caustics > 0) plan = plan_photons(scene, geometry, context.lights, settings);
     Picture picture;
     prepare_aovs(picture, settings);
     SampleSums sums(settings, has_unlit, past);
@@ -283,7 +307,11 @@ Picture PictureTracer::render(const PictureSettings& settings, const PictureWatc
         return so_far;
     };
     while (passes.next() > 0) {
-        pass({picture, sums, passes.done(), passes.end_of_pass()}, context, seen, progress, threads);
+        const Work work{picture, sums, passes.done(), passes.end_of_pass()};
+        if (plan.empty())
+            pass(work, context, seen, progress, threads);
+        else
+            caustic_pass(work, context, plan, seen, progress, threads);
         passes.finish([&] { return sums.noise(passes.done()); }, look);
     }
     sums.store(picture, passes.done(), true);

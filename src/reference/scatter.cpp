@@ -20,6 +20,7 @@ Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
 /// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
 /// unless the environment's light is drawn too.
 real Shader::traced_part(real roughness, real metallic) const {
+    if (context_.is_photon) return photons_follow(roughness, metallic) ? 1 : 0;
     if (context_.samples_environment() || context_.filters_environment()) return 1;
     if (context_.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
     const real x =

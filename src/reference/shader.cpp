@@ -74,7 +74,8 @@ Vec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& 
     const bool volume = meeting.wall && s.optics.transmits() && !s.optics.thin;
     const Lit at{s, meeting.hit.triangle, path, seen, volume ? meeting.behind : path.media};
     const Branch diffuse = diffuse_branch(at);
-    const Vec3 direct = s.optics.alpha * direct_light(at, context_.filters_environment() || !diffuse.traced);
+    const bool sky = context_.filters_environment() || !diffuse.traced;
+    const Vec3 direct = s.optics.alpha * (direct_light(at, sky) + caustic_light(at));
     if (!diffuse.traced) return direct;
     rays_.diffuse++;
     return direct + follow(diffuse, s, path, at.triangle, 2);

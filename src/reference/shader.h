@@ -12,6 +12,7 @@
 #include "reference/media.h"
 #include "reference/moment_before.h"
 #include "reference/optics.h"
+#include "reference/photon_tree.h"
 #include "reference/random_numbers.h"
 #include "reference/surface.h"
 #include "reference/surroundings.h"
@@ -19,6 +20,8 @@
 #include "scene/picture.h"
 
 namespace peelray::inline PRECISION {
+
+struct SentPhoton;
 
 /// What rays run through: shared by all threads, constant.
 struct RenderContext {
@@ -36,9 +39,12 @@ struct RenderContext {
     Box box;      ///< of the scene
     Media start;  ///< what the camera is in
     bool has_blended;
-    const MomentBefore* before;  ///< null: guides need no motion
+    const MomentBefore* before;           ///< null: guides need no motion
+    const PhotonTree* photons = nullptr;  ///< of the sample; null: there are none
+    bool glass_is_opaque = false;         ///< to light of lamps, which photons bring
+    bool is_photon = false;               ///< what runs is a photon: a sample, whatever the picture's pixels are
 
-    bool sampled() const { return is_sampled(settings); }
+    bool sampled() const { return is_photon || is_sampled(settings); }
     /// Is one lamp with a place drawn for all of them?
     bool draws_lamps() const { return samples_lamps(settings) && lamps.count > LAMPS_EACH; }
     bool samples_emitters() const { return peelray::samples_emitters(settings) && !emitters.empty(); }
@@ -101,6 +107,8 @@ class Shader {
     real through() const { return through_; }
     /// Does the camera see a surface that is not to be seen itself?
     bool catches() const { return catches_; }
+    /// Follows a photon to where it comes to rest, if it does; `usual`: the mean flux of such photons.
+    std::optional<RestingPhoton> fly(const SentPhoton& sent, uint32_t seed, real usual) const;
     /// Of a guided camera ray; `surfaces` is 0 where there are none.
     const DenoiseGuide& guide() const { return guide_; }
     /// Where what it comes from was, with RenderContext::before.
@@ -227,7 +235,8 @@ class Shader {
         bool from_behind;
     };
     static Start start_to(const Lit& at, const Vec3& direction);
-    Vec3 arriving(const Lit& at, const Start& start, const Vec3& direction, real distance);
+    /// `opaque_glass`: glass lets nothing of it through.
+    Vec3 arriving(const Lit& at, const Start& start, const Vec3& direction, real distance, bool opaque_glass = false);
     /// What Lambert's law scatters of light from the side that is seen and from behind, per unit of irradiance.
     struct BothSides {
         Vec3 front, back;
@@ -248,11 +257,16 @@ class Shader {
     static real scattered_density(const Lit& at, const Vec3& direction);
     Vec3 environment_light(const Lit& at);
     Branch diffuse_branch(const Lit& at) const;
+    static bool photons_follow(real roughness, real metallic);
+    bool photons_bring_lobe(const Optics& m, const Path& path) const;
+    bool photons_bring_coat(const Optics& m, const Path& path) const;
+    Vec3 caustic_light(const Lit& at) const;
     real emitter_density(uint32_t triangle, real probability, const Vec3& direction, real distance) const;
     real emission_share(const Path& path, const Hit& hit) const;
     Vec3 emission_towards(uint32_t triangle, real u, real v, const Vec3& direction) const;
     Vec3 emitter_light(const Lit& at);
-    Vec3 visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media) const;
+    Vec3 visibility(const Vec3& start, const Vec3& direction, real distance, uint32_t triangle, Media media,
+                    bool opaque_glass = false) const;
     real index_of(uint32_t medium, Channel channel) const;
     /// Index behind a surface over that before it, and what its two parts reflect.
     real relative_index(const Meeting& meeting, const Surface& surface, Channel channel) const;

@@ -10,6 +10,7 @@
 #include "render/cost_counter.h"
 #include "render/cube_maps.h"
 #include "render/moment_before.h"
+#include "render/photons.h"
 #include "render/tracers/ray_tracer.h"
 
 namespace peelray {
@@ -23,6 +24,7 @@ struct FrameState {
     std::unique_ptr<RayTracer> tracer;
     std::unique_ptr<CubeMaps> maps;        ///< null: rays are shaded, not looked up
     std::unique_ptr<CostCounter> counter;  ///< null: nothing is counted
+    std::unique_ptr<PhotonMap> photons;    ///< null: lamps send none
 
     // Of the picture that is being made:
     MomentBefore before;  ///< where it is asked for
@@ -67,6 +69,16 @@ struct FrameState {
     bool soft_lamps() const {
         const auto has_size = [](const GpuLight& light) { return light.sine > 0; };
         return samples_lamps(settings) && !maps && std::ranges::any_of(scene.light_list, has_size);
+    }
+    /// What the shaders that shade hits know of the scene's materials. Cones also filter what mirrors show of a sampled
+    /// environment.
+    uint32_t shaded_kinds() const {
+        return scene.base_colors.kinds | (env_sampled() || env_filtered() ? MATERIALS_FILTERED : 0);
+    }
+    /// PHOTONS_*: the ways that light takes as photons; 0: none.
+    uint32_t photon_ways() const {
+        if (!photons) return 0;
+        return photons->plan().through_glass && scene.has_glass ? PHOTONS_THROUGH_GLASS : PHOTONS_BY_MIRRORS;
     }
     /// Is light looked for on emissive triangles?
     bool emitting() const { return scene.emitters() > 0 && !maps && samples_emitters(settings); }

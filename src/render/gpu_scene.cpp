@@ -229,6 +229,7 @@ void GpuScene::upload_lights(Commands& commands, const std::vector<Light>& own) 
     const Lamps lamps = lamps_of(own, environment_lights_);
     for (const Light& light : lamps.lights) list.push_back(gpu_light(light));
     for (uint32_t i = 0; i < lamps.count; i++) list[lamps.first + i].cumulative = lamps.cumulative[i];
+    lamp_list = lamps.lights;
     first_placed_ = lamps.first;
     placed_lamps_ = lamps.count;
     const size_t bytes = list.size() * sizeof(GpuLight);

@@ -46,6 +46,7 @@ class GpuScene {
     Buffer media_ranks;                ///< uint32: number of materials, rank by material, material by rank
     bool has_unlit = false;            ///< some triangle is to be shown as it is
     std::vector<GpuLight> light_list;  ///< what `lights` holds
+    std::vector<Light> lamp_list;      ///< the same
     Instances instances;
     std::vector<DrawRange> draws;  ///< all instances, a draw per body
     Buffer draw_table;             ///< the same, GpuDraw each

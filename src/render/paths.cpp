@@ -3,6 +3,16 @@
 #include <optional>
 
 namespace peelray {
+
+std::vector<Binding> surfaces_of(const FrameState& f) {
+    std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
+    surfaces.push_back({"normals", f.scene.normals});
+    surfaces.push_back({"frame", f.view.target.frame});
+    surfaces.push_back({"lookups", f.scene.lookups});
+    surfaces.push_back(Binding::if_used("media_ranks", f.scene.media_ranks));
+    return if_used(surfaces);
+}
+
 namespace {
 
 const char* scatter_name(bool filtered, bool drawn) {
@@ -37,20 +47,20 @@ void record_scatter(FrameState& f, const LevelParams& p) {
                           Binding::if_used("media_ranks", scene.media_ranks),
                           Binding::if_used("next_media", next.media),
                           Binding::if_used("shadow_media", queues.lights().media)});
-    // Cones also filter what mirrors show of the environment.
-    const uint32_t kinds = scene.base_colors.kinds | (f.env_sampled() || f.env_filtered() ? MATERIALS_FILTERED : 0);
     // A GPU is faster where the compiler knows; a CPU would compile for seconds once more.
     const uint32_t sampled = f.constants.effects & EFFECT_SAMPLED ? 1 : 0;
     std::vector<Constant> constants{{"camera", camera},
                                     {"by_number", camera && f.view.by_number()},
                                     {"layered", layered},
-                                    {"material_kinds", kinds}};
-    const bool drawn = f.env_sampled() || f.indirect() || f.emitting() || f.drawn_lamps() > 0 || f.soft_lamps();
+                                    {"material_kinds", f.shaded_kinds()}};
+    const bool drawn = f.env_sampled() || f.indirect() || f.emitting() || f.drawn_lamps() > 0 || f.soft_lamps() ||
+                       f.photons != nullptr;
     if (drawn)
         constants.insert(constants.end(), {{"indirect", f.indirect()},
                                            {"emitting", f.emitting()},
                                            {"many_lamps", f.drawn_lamps() > 0},
-                                           {"soft_lamps", f.soft_lamps()}});
+                                           {"soft_lamps", f.soft_lamps()},
+                                           {"photons", f.photon_ways()}});
     if (!f.env_filtered()) constants.push_back({"sampled", f.device.info().kind == "CPU" ? 2u : sampled});
     if (drawn && !f.env_filtered()) constants.push_back({"env_sampled", f.env_sampled()});
     const Pass& pass = f.device.pass(scatter_name(f.env_filtered(), drawn), constants);
@@ -71,16 +81,6 @@ RayQueue queue_of(const PathQueues& queues, const Buffer& rays, const Buffer& sk
             &queues.counters(),
             PathQueues::groups_offset(groups),
             PathQueues::launch_offset(groups)};
-}
-
-/// What shading reads beside triangles and instances.
-std::vector<Binding> surfaces_of(const FrameState& f) {
-    std::vector<Binding> surfaces = base_color_bindings(f.scene.base_colors);
-    surfaces.push_back({"normals", f.scene.normals});
-    surfaces.push_back({"frame", f.view.target.frame});
-    surfaces.push_back({"lookups", f.scene.lookups});
-    surfaces.push_back(Binding::if_used("media_ranks", f.scene.media_ranks));
-    return if_used(surfaces);
 }
 
 void record_trace(FrameState& f, uint32_t level) {
@@ -154,6 +154,7 @@ void record_paths(FrameState& f, uint32_t sample, uint32_t first_row) {
         else if (f.layered())
             record_camera_walls(f, p);
         record_scatter(f, p);
+        if (f.photons) f.photons->record_gather(f, p);
     }
     if (f.lights_per_hit() > 0) record_shadows(f);
     if (f.counter) record_costs(f, sample, first_row);

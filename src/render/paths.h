@@ -10,4 +10,7 @@ namespace peelray {
 /// again.
 void record_paths(FrameState& f, uint32_t sample, uint32_t first_row);
 
+/// What shading reads beside triangles and instances, all of it only if used: for tracers that look at surfaces.
+std::vector<Binding> surfaces_of(const FrameState& f);
+
 }  // namespace peelray

@@ -34,6 +34,7 @@ void check_settings(const Device& device, const GpuScene& scene, const RenderSet
     static_assert(kBounceLimits.most == QUEUE_LEVELS - 1);
     check_limits(kBounceLimits, setting::bounces, settings.bounces);
     check_limits(kBounceLimits, setting::gi, settings.gi);
+    check_limits(kPhotonLimits, setting::caustics, settings.caustics);
     check_limits(kSampleLimits, setting::spp, settings.spp);
     if (settings.visibility == Visibility::compute && !ComputeView::possible(device, scene))
         fail("the device '{}' cannot find what pixels see by compute shaders{}: use {} raster", device.info().name,
@@ -110,6 +111,7 @@ struct Renderer::Impl {
     glm::uvec2 camera_media() const;
     void prepare_view();
     void prepare_maps();
+    void prepare_photons();
     void prepare_queues();
     void look_back();
     FrameMeter render_frame(const PictureWatch& watch, bool only_kept = false);
@@ -136,6 +138,7 @@ void Renderer::Impl::prepare(const RenderSettings& settings, bool open) {
     prepare_tracer();
     prepare_view();
     if (f.maps) prepare_maps();
+    prepare_photons();
     prepare_queues();
 }
 
@@ -225,6 +228,17 @@ void Renderer::Impl::prepare_maps() {
     f.maps->prepare(f.commands, f.settings, f.constants, box);
 }
 
+/// Where none would come to anything there are none.
+void Renderer::Impl::prepare_photons() {
+    PhotonPlan plan;
+    if (f.settings.caustics > 0 && f.tracer->traces() && !f.maps)
+        plan = plan_photons(source, flatten(source, moment),
+                            std::span(f.scene.lamp_list).first(f.scene.lamps(f.env_sampled())), f.settings);
+    if (plan.empty()) return f.photons.reset();
+    if (!f.photons) f.photons = std::make_unique<PhotonMap>(f.device);
+    f.photons->prepare(f, std::move(plan));
+}
+
 void Renderer::Impl::prepare_queues() {
     const uint32_t face = f.maps ? f.maps->face() : 0;
     f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1,
@@ -311,6 +325,7 @@ void Renderer::Impl::record_band(uint32_t sample, uint32_t first_row) {
     f.commands.fill(f.queues.counters(), 0);
     if (f.counter) f.counter->record_band(f.commands, f.queues, f.last_level + 1);
     if (first_row == 0) f.view.record(f.commands, f.scene, f.queues, sample);
+    if (first_row == 0 && f.photons) f.photons->record(f, sample);
     record_shading(sample, first_row);
     const Buffer& frame = f.view.target.frame;
     output.record_accumulation(f.commands, f.queues, frame, level_params(f, 0, sample, first_row), f.settings);
@@ -349,6 +364,8 @@ void Renderer::Impl::count_rays() {
     rays.cut_reflection += queues.count(QUEUE_CUT_REFLECTION);
     rays.cut_refraction += queues.count(QUEUE_CUT_REFRACTION);
     rays.crowded += queues.count(QUEUE_CROWDED);
+    rays.photons += queues.count(QUEUE_PHOTON_RAYS);
+    rays.photons_kept += queues.count(QUEUE_PHOTONS);
 }
 
 /// Post passes change the picture in place: not before its last band is known to have fitted.
@@ -367,7 +384,7 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.tracer = f.settings.tracer;
     stats.visibility = f.view.by_number() ? Visibility::compute : Visibility::raster;
     stats.scene_bytes = f.scene.bytes();
-    stats.frame_bytes = f.queues.bytes() + output.bytes() + f.view.bytes();
+    stats.frame_bytes = f.queues.bytes() + output.bytes() + f.view.bytes() + (f.photons ? f.photons->bytes() : 0);
     stats.moved = moved;
     stats.counted = f.counter != nullptr;
     if (f.counter) stats.costs = f.counter->sums();

@@ -46,6 +46,7 @@ struct PictureSettings {
     EnvironmentMode env_mode = EnvironmentMode::open;
     bool reflection = true, refraction = true, shadow = true;  ///< effects that are traced; others see the environment
     uint32_t gi = 0;                                           ///< diffuse bounces in a row that are traced, 0 to 16
+    uint32_t caustics = 0;            ///< photons for each sample of the pixels, up to 2^24; 0: no caustics
     bool ambient = false;             ///< one ray per hit and sample decides how much of the sky a diffuse surface sees
     bool energy_compensation = true;  ///< light that rough surfaces scatter several times is not lost (Turquin, 2019)
     /// The largest channel that a sample's radiance may have, > 0: brighter ones are scaled down to it. None: no limit.
@@ -89,6 +90,8 @@ struct RayCounts {
     uint64_t cut_reflection = 0, cut_refraction = 0;
     /// Reflected and refracted ones that were in more than MEDIA_TOGETHER media at once.
     uint64_t crowded = 0;
+    /// Photons that lamps sent, and those of them that came to rest on a surface that scatters light.
+    uint64_t photons = 0, photons_kept = 0;
     uint64_t secondary() const { return reflection + refraction + diffuse + shadow + ambient; }
     RayCounts& operator+=(const RayCounts& b) {
         primary += b.primary;
@@ -100,6 +103,8 @@ struct RayCounts {
         cut_reflection += b.cut_reflection;
         cut_refraction += b.cut_refraction;
         crowded += b.crowded;
+        photons += b.photons;
+        photons_kept += b.photons_kept;
         return *this;
     }
 };

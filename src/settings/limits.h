@@ -38,6 +38,8 @@ inline constexpr Limits kResolutionLimits{
 inline constexpr Limits kBlockLimits{
     .least = 2, .most = 32, .fault = "a block of {} pixels is out of range", .choose = "2 to 32 a side"};
 inline constexpr Limits kBounceLimits{.least = 0, .most = 16, .fault = "{} bounces are too many", .choose = "0 to 16"};
+inline constexpr Limits kPhotonLimits{
+    .least = 0, .most = 1 << 24, .fault = "{} photons are too many", .choose = "0 to 16777216"};
 inline constexpr Limits kSampleLimits{
     .least = 1, .most = 65536, .fault = "{} samples per pixel are out of range", .choose = "1 to 65536"};
 

@@ -305,7 +305,7 @@ inline void add_scene(SettingList& list, SceneArguments& a) {
 /// What is traced, and of what.
 struct EffectArguments {
     ChoiceSet<Effect> effects = {Effect::reflection, Effect::refraction, Effect::shadow};
-    uint32_t bounces = 4, gi = 0, spp = 1, seed = 0;
+    uint32_t bounces = 4, gi = 0, caustics = 0, spp = 1, seed = 0;
     std::optional<float> clamp;  ///< radiance; none: samples are as bright as they are
     std::optional<MaterialOverride> material;
     bool floor = false;
@@ -316,6 +316,26 @@ struct EffectArguments {
 
 /// A list out of the effects, or "none".
 std::optional<ChoiceSet<Effect>> parse_effects(const std::string& text);
+
+/// How often light is followed.
+inline void add_ways(SettingList& list, EffectArguments& a, const std::string& group) {
+    add_setting(list, a.bounces,
+                {.name = "bounces",
+                 .group = group,
+                 .help = "reflections and refractions in a row, 0 to 16",
+                 .limits = kBounceLimits});
+    add_setting(list, a.gi,
+                {.name = "gi",
+                 .group = group,
+                 .help = "indirect light: diffuse bounces in a row, 0 to 16",
+                 .limits = kBounceLimits});
+    add_setting(list, a.caustics,
+                {.name = "caustics",
+                 .group = group,
+                 .help = "photons that the lamps send by way of mirrors and glass to rough surfaces, for each sample "
+                         "per pixel; 100000 is a good number; 0: no caustics, and glass only tints shadows",
+                 .limits = kPhotonLimits});
+}
 
 inline void add_effects(SettingList& list, EffectArguments& a) {
     const std::string group = "Effects";
@@ -329,16 +349,7 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
                     const std::string names = print_text(effects);
                     return names.empty() ? std::nullopt : std::optional(names);
                 });
-    add_setting(list, a.bounces,
-                {.name = "bounces",
-                 .group = group,
-                 .help = "reflections and refractions in a row, 0 to 16",
-                 .limits = kBounceLimits});
-    add_setting(list, a.gi,
-                {.name = "gi",
-                 .group = group,
-                 .help = "indirect light: diffuse bounces in a row, 0 to 16",
-                 .limits = kBounceLimits});
+    add_ways(list, a, group);
     add_setting(list, a.spp,
                 {.name = "spp",
                  .group = group,

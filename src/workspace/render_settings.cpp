@@ -42,6 +42,7 @@ RenderSettings render_settings(const PictureArguments& a) {
     choose_hit(settings, a.tracing.hit);
     settings.bounces = a.bounces;
     settings.gi = a.gi;
+    settings.caustics = a.caustics;
     settings.spp = a.spp;
     settings.seed = a.seed;
     settings.clamp = a.clamp;

@@ -62,6 +62,19 @@ std::string crowded_note(const RayCounts& rays) {
                        counted("{} ray{|s} {was|were}", rays.crowded), MEDIA_TOGETHER);
 }
 
+std::string caustics_note(const RayCounts& rays, const PictureSettings& settings, bool emissive) {
+    if (settings.caustics == 0) return {};
+    if (rays.photons == 0)
+        return fmt::format("{} {} changes nothing: no lamp sends light to a mirror or glass of which rays are traced",
+                           setting::caustics, settings.caustics);
+    const bool image = settings.env_mode == EnvironmentMode::sampled;
+    if (!emissive && !image) return {};
+    return fmt::format("only lamps send photons: light of {} goes straight through glass, without caustics",
+                       !emissive ? "the environment"
+                       : !image  ? "emissive surfaces"
+                                 : "the environment and of emissive surfaces");
+}
+
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice) {
     if (choice.hit != HitTest::tolerance) return {};
     // Between the centres of two pixels a surface of slope 1 rises by half a voxel over its sample.

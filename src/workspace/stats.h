@@ -73,6 +73,10 @@ std::string cut_note(const RayCounts& rays, uint32_t bounces);
 /// such rays and follows them.
 std::string crowded_note(const RayCounts& rays);
 
+/// What to say where photons were asked for and lamps sent none, or other lights would have; empty: nothing.
+/// `emissive`: some surfaces light the scene.
+std::string caustics_note(const RayCounts& rays, const PictureSettings& settings, bool emissive);
+
 /// What to say where the tolerance of `tolerance` hits is so far below the voxels that surfaces have holes; empty:
 /// nothing. `bodies`: with the grids of their cubes.
 std::string tolerance_note(const std::vector<LdcBody>& bodies, const CubeChoice& choice);

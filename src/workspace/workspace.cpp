@@ -1,5 +1,6 @@
 #include "workspace/workspace.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
@@ -94,6 +95,9 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& given, const 
     note_uncaught(settings);
     const std::string cut = cut_note(made.stats.rays, settings.bounces);
     if (!cut.empty() && !std::exchange(noted_.cut, true)) note(notes_, cut);
+    const bool emissive = samples_emitters(settings) && std::ranges::any_of(scene_.scene().materials, is_emissive);
+    const std::string caustics = caustics_note(made.stats.rays, settings, emissive);
+    if (!caustics.empty() && !std::exchange(noted_.caustics, true)) note(notes_, caustics);
     const std::string crowded = is_on_cpu(settings.tracer) ? "" : crowded_note(made.stats.rays);
     if (!crowded.empty() && !std::exchange(noted_.crowded, true)) note(notes_, crowded);
     note_culled(settings, made.picture);

@@ -96,6 +96,7 @@ class Workspace {
         bool tolerance = false;    ///< that it is too small
         bool culled = false;       ///< that the camera is behind single-sided faces
         bool cut = false;          ///< that rays end too early
+        bool caustics = false;     ///< that there are none, or not all
         bool crowded = false;      ///< that rays are in too many media
         ChoiceSet<HitTest> room;   ///< that these stand for what found no room
     } noted_;

@@ -330,5 +330,30 @@ TEST_F(ProgramTest, MediaThatTouchAndOverlapLookTheSame) {
     }
 }
 
+/// Photons go the same ways, so that pictures differ no more than without them.
+void expect_same_caustics(const Outcome& run, const std::string& report, double flip) {
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto pictures = nlohmann::json::parse(report)["pictures"];
+    EXPECT_LE(pictures[0]["difference"]["flip"], flip);
+    const double ours = pictures[0]["stats"]["photons"]["kept"], theirs = pictures[1]["stats"]["photons"]["kept"];
+    EXPECT_NEAR(ours, theirs, 2e-3 * theirs + 2);
+    EXPECT_GT(ours, 1000);
+}
+
+TEST_F(ProgramTest, LongCausticsLookTheSame) {
+    const Outcome run = this->run({"compare", "builtin:glass", "-o", out("r.html"), "--json", out("r.json"), "--size",
+                                   "160x128", "--tracers", "ldc,reference", "--ldc", "256", "--caustics", "20000"});
+    expect_same_caustics(run, get(out("r.json")), 0.004);
+}
+
+TEST_F(ProgramTest, LongCausticsOfRareMaterialsLookTheSame) {
+    const std::string scene =
+        ball_scene([&](const std::string& name) { return out(name); }, nlohmann::json::parse(kRareMaterials));
+    const Outcome run =
+        this->run({"compare", scene, "-o", out("r.html"), "--json", out("r.json"), "--size", "160x128", "--tracers",
+                   "ldc,reference", "--ldc", "256", "--caustics", "50000", "--spp", "4", "--gi", "1", "--floor"});
+    expect_same_caustics(run, get(out("r.json")), 0.01);
+}
+
 }  // namespace
 }  // namespace peelray
