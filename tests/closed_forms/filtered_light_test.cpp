@@ -2,6 +2,7 @@
 // the integrals elsewhere.
 #include <pictures.h>
 
+#include "../effort.h"
 #include "finishes.h"
 #include "path/filtered_numbers.h"
 
@@ -45,6 +46,7 @@ TEST_F(FilteredLightTest, OpenPlanesAreExact) {
         // Light L = 0.5 + 0.4 d has the irradiance pi (0.5 + 0.4 · 2/3 n).
         EXPECT_TRUE(near(mean_radiance(render(stage, image, settings)), 0.5 + glm::dvec3(0, 0.8 / 3, 0), 2e-3)) << spp;
     }
+    if (kOnDevice) return;  // it would compile another shader
     RenderSettings settings = filtered_settings(above(0));
     settings.gi = 1;
     EXPECT_TRUE(near(mean_radiance(render(stage, everywhere, settings)), glm::dvec3(1), 1e-5))
@@ -170,6 +172,7 @@ TEST_F(FilteredLightTest, LampsThatStandForSpotsCountOnce) {
 }
 
 TEST_F(FilteredLightTest, CatchersShowTheShade) {
+    if (kOnDevice && !test::effort(false, true)) GTEST_SKIP() << "a shader more to compile";
     // A disc of radius 1 at height 1 hides half of the cosine's weight from the point below its middle.
     Material catcher = lambert({0.5f, 0.5f, 0.5f});
     catcher.catcher = true;
