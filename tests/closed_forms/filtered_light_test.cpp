@@ -2,7 +2,7 @@
 // the integrals elsewhere.
 #include <pictures.h>
 
-#include "../effort.h"
+#include "effort.h"
 #include "finishes.h"
 #include "path/filtered_numbers.h"
 
