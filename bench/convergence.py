@@ -6,8 +6,8 @@
 For each scene, at 120x96: the root of the mean squared error at 1, 4, 16, 64 and 256 samples, and mean FLIP at 1, 16 and 256, against
 `--tracer reference` with 4096 samples of another seed; the slope of the error over the samples in double logarithm, which is -0.5
 for independent ones; and with each effect alone the difference of the mean over eight pictures of 64 samples and as many seeds from
-that of the reference, in percent of the scene's mean radiance, with its standard error. (One sample is always in the pixel's middle:
-what it misses of edges and of a sun's images is the same for all seeds.)
+as many by the reference of other seeds, in percent of the scene's mean radiance, with its standard error. (Where the samples of a
+pixel lie depends on their number alone: what they miss of edges and of a sun's images is the same for all seeds.)
 Needs numpy and, for the plot, matplotlib (Debian: python3-numpy, python3-matplotlib).
 """
 import argparse
@@ -77,10 +77,10 @@ def errors_of(pictures, a):
 
 def bias_of(pictures, a, effects, scale):
     """Percent of `scale`: the difference of means, and its standard error."""
-    truth = pictures.render("mean", "reference", a.truth // 4, 998, effects)
+    truth = numpy.mean([pictures.render("mean", "reference", a.of, 900 + seed, effects).mean() for seed in range(a.seeds)])
     means = [pictures.render("seed", a.tracer, a.of, seed, effects).mean() for seed in range(a.seeds)]
     error = numpy.std(means, ddof=1) / numpy.sqrt(a.seeds)
-    return 100 * (numpy.mean(means) - truth.mean()) / scale, 100 * error / scale
+    return 100 * (numpy.mean(means) - truth) / scale, 100 * error / scale
 
 
 def plot(path, curves):

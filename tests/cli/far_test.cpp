@@ -78,9 +78,9 @@ TEST_F(FarCommand, PicturesAreThoseOfTheOrigin) {
 }
 
 TEST_F(FarCommand, NumbersAreThoseOfTheWorld) {
-    picture("near.gltf", {"--aov", "position,depth"});
+    picture("near.gltf", {"--aov", "position,depth", "--tracer", "ldc"});
     const std::vector<float> here = channels_of(out("a.position.exr"));
-    picture("far.gltf", {"--aov", "position,depth,box", "--stats", out("a.json")});
+    picture("far.gltf", {"--aov", "position,depth,box", "--stats", out("a.json"), "--tracer", "ldc"});
     const std::vector<float> there = channels_of(out("a.position.exr")), depth = channels_of(out("a.depth.exr"));
     const double by[] = {431000.125, 71.5, -5412000.75}, coarse[] = {0.04, 1e-4, 0.6};
     size_t seen = 0;
