@@ -95,7 +95,7 @@ def plot(path, curves):
     axes.set_xlabel("samples per pixel")
     axes.set_ylabel("error by that of one sample")
     axes.legend(fontsize=7)
-    figure.savefig(path, metadata={"Date": None})
+    figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
 
 
 def main():

@@ -114,7 +114,8 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
 /// goes on as often as it is bright, and brings as much more (Arvo and Kirk, Particle Transport and Image Synthesis,
 /// 1990).
 real Shader::roulette(real brings, const Path& path, uint32_t purpose) const {
-    if (is_reference || context_.settings.spp < LEAST_FOR_ROULETTE) return 1;
+    // A bound on samples would take what the paths that are followed bring for the others.
+    if (is_reference || context_.settings.spp < LEAST_FOR_ROULETTE || context_.settings.clamp) return 1;
     const real enough = std::min(MOST_ROULETTE, context_.settings.spp * ROULETTE_PER_SAMPLE);
     if (!(brings < enough)) return 1;
     return random(path, purpose).x * enough < brings ? brings / enough : 0;

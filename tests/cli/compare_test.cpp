@@ -91,8 +91,8 @@ TEST_F(CompareCommand, ItsCommandsMakeItsPicturesAgain) {
 
 TEST_F(CompareCommand, PicturesOfOtherPrograms) {
     put("cube.obj", kCube);
-    expect_done(render(in("cube.obj"), {}, "a.png"), {"a.png"});
-    expect_done(render(in("cube.obj"), {}, "a.exr"), {"a.exr", "a.png"});
+    expect_done(render(in("cube.obj"), {"--tracer", "ldc"}, "a.png"), {"a.png"});
+    expect_done(render(in("cube.obj"), {"--tracer", "ldc"}, "a.exr"), {"a.exr", "a.png"});
     const Outcome run = compare(in("cube.obj"), {"--tracers", "ldc", "--picture", out("a.png"), "--picture",
                                                  out("a.exr"), "--json", out("r.json")});
     EXPECT_EQ(run.status, 0) << run.err;

@@ -28,6 +28,18 @@ TEST_F(RouletteTest, WhatGlassReflectsIsThereInTheMean) {
     expect_the_same_mean(stage, white, settings, 0.001);
 }
 
+TEST_F(RouletteTest, ClampedSamplesLoseNothingToIt) {
+    // No sample is brighter than the world, unless it stands for others.
+    Stage stage;
+    Material m = thin_glass();
+    m.thickness = 1;
+    stage.add(sphere({0, 0, 0}, 1, 32), m);
+    RenderSettings settings = settings_for(orthographic({0, 0, 4}, {0, 0, 0}, 1.9f), 32);
+    settings.bounces = 8;
+    settings.clamp = 1.01f;
+    expect_the_same_mean(stage, white, settings, 0.001);
+}
+
 TEST_F(RouletteTest, DimEmittersLightInTheMean) {
     // A tenth of the world's light each way.
     Stage stage;
