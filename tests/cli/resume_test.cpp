@@ -299,7 +299,7 @@ TEST_F(Resume, TheManifestKnowsEveryOptionThatShapesAPicture) {
 // ---- shards
 
 TEST_F(Resume, ShardsMakeTheWhole) {
-    const Words options = {"--frames", "1:8", "--floor", "--aov", "normal"};
+    const Words options = {"--frames", "1:8", "--floor", "--aov", "normal", "--tracer", "ldc"};
     ASSERT_EQ(sequence("f%d.png", options).status, 0);
     const auto whole = contents();
     remove_outputs();

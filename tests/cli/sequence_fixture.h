@@ -3,7 +3,6 @@
 
 #include <signal.h>
 
-#include <algorithm>
 #include <thread>
 
 #include "cli/program_fixture.h"
@@ -62,14 +61,12 @@ class SequenceTest : public ProgramTest {
         put("camera.gltf", moving_gltf(true).dump());
     }
 
-    /// `peelray render moving.gltf -o out/NAME --size 64x48 …`, in cubes, which may be kept from frame to frame, if no
-    /// tracer is named.
+    /// `peelray render moving.gltf -o out/NAME --size 64x48 …`
     Words words(const std::string& name, const Words& more, const std::string& scene = "moving.gltf") const {
         Words all = {"render", scene.starts_with("/") || scene.starts_with("builtin:") ? scene : in(scene),
                      "-o",     out(name),
                      "--size", "64x48"};
         all.insert(all.end(), more.begin(), more.end());
-        if (std::ranges::find(more, "--tracer") == more.end()) all.insert(all.end(), {"--tracer", "ldc"});
         return all;
     }
     Outcome sequence(const std::string& name, const Words& more, const std::string& scene = "moving.gltf",

@@ -1,5 +1,5 @@
-// Which tracer draws a picture that names none, and how near the one on the CPU comes to the reference. The tests' device
-// is a software device.
+// Which tracer draws a picture that names none, and how near the one on the CPU comes to the reference. The tests'
+// device is a software device.
 #include "cli/program_fixture.h"
 
 namespace peelray {
@@ -65,12 +65,15 @@ TEST_F(TracerTest, TheManifestNamesWhatAutoStandsFor) {
 
 /// The same samples of the same rays, in single precision.
 TEST_F(TracerTest, CpuIsNearTheReference) {
-    for (const Words& words : {Words{"builtin:teapots"}, {"builtin:glass"}, {"builtin:leaves"}, {"builtin:walker"},
+    for (const Words& words : {Words{"builtin:teapots"},
+                               {"builtin:glass"},
+                               {"builtin:leaves"},
+                               {"builtin:walker"},
                                {"builtin:room", "--effects", "reflection,refraction,shadow,ambient", "--gi", "1"},
                                {in("cube.obj"), "--material", "glass", "--floor", "--spp", "4"}}) {
         SCOPED_TRACE(words[0]);
-        Words all = {"compare", words[0], "-o", out("r.html"), "--json", out("r.json"), "--tracers", "cpu,reference",
-                     "--size", "200x160"};
+        Words all = {"compare",   words[0],        "-o",     out("r.html"), "--json", out("r.json"),
+                     "--tracers", "cpu,reference", "--size", "200x160"};
         all.insert(all.end(), words.begin() + 1, words.end());
         ASSERT_EQ(run(all).status, 0);
         const Json difference = Json::parse(get(out("r.json")))["pictures"][0]["difference"];
