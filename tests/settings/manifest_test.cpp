@@ -56,6 +56,7 @@ TEST(Manifest, WritesValuesAsRunsBegunEarlierDid) {
     a.sequence.fps = 30;
     a.animation = "0";
     a.tracing.ldc = 32;
+    a.tracing.tracer = Tracer::ldc;  // what a run begins with: `auto` is resolved before
     const Json defaults = Json::parse(R"({
         "--size": "1280x1024", "--eye": null, "--look": null, "--up": null, "--fov": null, "--camera": null,
         "--time": null, "--animation": "0", "--frame-moment": null, "--fps": "30", "--turntable": null, "--env": null, "--sky": null,
