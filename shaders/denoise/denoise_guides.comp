@@ -80,8 +80,12 @@ vec3 randomLight(uint place, PathNode node, Surface s, Material m, bool mirrors)
     return max(all - s.alpha * m.emissive, vec3(0));
 }
 
-/// Has the node a diffuse bounce?
-bool scatters(uint place, PathNode node) { return (node.flags & NODE_BRANCHES) != 0u && branches[place].child2 < params.next_capacity; }
+/// Is there light at the surface that is drawn at random? It may be so where this draw is zero: else a pixel would be guided by its draw,
+/// now by the surface and now by what that mirrors.
+bool isLit(PathNode node, Surface s, Material m) {
+    if ((node.flags & NODE_LIGHTS) != 0u) return true;
+    return params.finds_light != 0u && !ignoresLight(s, m) && (m.flags & MATERIAL_CATCHER) == 0u;
+}
 
 /// On along the branch that shows more.
 DenoiseLink followed(uint place, PathNode node, DenoiseLink link, float t) {
@@ -133,7 +137,7 @@ DenoiseLink lookAt(uint at, DenoiseLink link, Ray ray, vec2 cone, Hit hit) {
     const Lobe lobe = lobeOf(s, m, -ray.direction);
     const bool coat = coated && m.clearcoat > 0.0 && m.coat_roughness >= MIRROR_ROUGHNESS;
     const bool mirrors = params.samples_lobes != 0u && (!isMirror(lobe) || coat);
-    if (!mirrors && (node.flags & NODE_LIGHTS) == 0u && !scatters(link.place, node)) return followed(link.place, node, link, hit.t);
+    if (!mirrors && !isLit(node, s, m)) return followed(link.place, node, link, hit.t);
     vec3 light = link.weight * randomLight(link.place, node, s, m, mirrors);
     const bool finite = all(lessThan(light, vec3(1e30))) && all(greaterThanEqual(light, vec3(0)));
     if (!finite) return kNoLink;

@@ -39,9 +39,10 @@ struct DenoiseGuideParams {
     uint first_row;     ///< of the band, a multiple of 8
     uint sample_index;
     uint samples_lobes;  ///< 1: of a rough lobe one direction is drawn
+    uint finds_light;    ///< 1: shadow rays or diffuse bounces bring light to what scatters it, where the draw is not zero
     float limit;         ///< of a sample's light (PictureSettings::clamp)
 };
-SHARED_SIZE(DenoiseGuideParams, 40);
+SHARED_SIZE(DenoiseGuideParams, 44);
 
 struct DenoiseParams {
     uint width;

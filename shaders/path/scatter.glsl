@@ -180,11 +180,6 @@ vec3 arrivingLight(uint index, Surface s, Material m, Shade shade, vec3 view, Su
     return light == vec3(0) || !isBlocked(s, shade, from, direction) ? light : vec3(0);
 }
 
-/// Has the surface neither a lobe that holds a lamp, nor anything that scatters, as mirrors and clear glass?
-bool ignoresLight(Surface s, Material m) {
-    return m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0;
-}
-
 /// One direction for the light that the surface scatters from all around. `inside`: medium behind the surface.
 Branch diffuseBranch(Surface s, Material m, Shade shade, vec3 view, RayState state, vec2 cone, uint inside) {
     Branch branch = NO_BRANCH;

@@ -29,7 +29,8 @@ std::optional<uint32_t> Shader::guiding_branch(const Surface& surface, const Pat
     const Optics& m = surface.optics;
     if (!path.guided || m.unlit || draws_mirrored(m, context_.settings)) return {};
     const PictureSettings& settings = context_.settings;
-    const bool lit = settings.shadow && (settings.env_mode == EnvironmentMode::sampled || !context_.lights.empty());
+    const bool lit = settings.shadow && (settings.env_mode == EnvironmentMode::sampled || !context_.lights.empty() ||
+                                         context_.samples_emitters());
     if (holds_light(m) && (lit || settings.gi > 0 || occludes_sky(settings))) return {};
     const auto shown = [](const Branch& branch) { return branch.traced ? luminance(branch.weight) : 0; };
     const real first = shown(out.reflection), second = out.split.empty() ? shown(out.refraction) : 0;

@@ -46,6 +46,7 @@ void Denoiser::record_level(FrameState& f, uint32_t level, uint32_t sample, uint
     p.first_row = first_row;
     p.sample_index = sample;
     p.samples_lobes = is_sampled(f.settings);
+    p.finds_light = f.lights_per_hit() > 0 || f.indirect();
     p.limit = f.settings.clamp.value_or(std::numeric_limits<float>::max());
     f.commands.run(device_.pass("denoise_guides", {{"camera", level == 0},
                                                    {"by_number", !kept && f.view.by_number()},

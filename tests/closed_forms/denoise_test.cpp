@@ -67,6 +67,24 @@ TEST_F(DenoiseTest, TakesItInAMirror) {
     EXPECT_LT(distance(picture(1, true), truth), 0.3 * distance(noisy, truth));
 }
 
+/// Half of what is drawn from the environment is below the floor. Where nothing was found it is the floor all the same.
+TEST_F(DenoiseTest, TakesItOnAMirrorThatScatters) {
+    Material floor = lambert({0.8f, 0.8f, 0.8f});
+    floor.metallic = 0.5f;
+    floor.roughness = 0;
+    Stage stage;
+    stage.add(ground(3), floor);
+    const auto picture = [&](uint32_t spp, bool denoise) {
+        RenderSettings s = settings_for_corner(spp, denoise);
+        s.ambient = false;
+        s.env_mode = EnvironmentMode::sampled;
+        return render(stage, white, s);
+    };
+    const RenderResult truth = picture(256, false), noisy = picture(1, false);
+    EXPECT_GT(distance(noisy, truth), 1e-3);
+    EXPECT_LT(distance(picture(1, true), truth), 0.2 * distance(noisy, truth));
+}
+
 TEST_F(DenoiseTest, WhatIsNotDrawnAtRandomStays) {
     Stage stage = corner(lambert({0.8f, 0.8f, 0.8f}));
     stage.add(ground(0.5f, 0.3f), plane_mirror());
