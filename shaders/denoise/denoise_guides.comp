@@ -31,6 +31,7 @@ BUFFER(, 23, DenoiseGuide, denoise_guides)
 #include "path/cone.glsl"
 #include "path/interface.glsl"
 #include "path/lobe.glsl"
+#include "path/ignores_light.glsl"
 #include "path/gather.glsl"
 #include "view/camera.glsl"
 #include "view/camera_hit.glsl"

@@ -11,10 +11,10 @@ namespace peelray {
 /// Of a pixel, the sums over those of its samples that see light drawn at random: that of the first surface along the
 /// camera's ray, mirrors and clear glass being followed, where any is.
 struct DenoiseGuide {
-    vec3 light;     ///< that light, as it arrives at the camera
+    vec3 light;      ///< that light, as it arrives at the camera
     float surfaces;  ///< how many samples there are
-    vec3 albedo;    ///< what the light is divided by: the share of light that the surface sends on, weighted likewise
-    float depth;    ///< length of the path
+    vec3 albedo;     ///< what the light is divided by: the share of light that the surface sends on, weighted likewise
+    float depth;     ///< length of the path
     vec3 normal;
     float gloss;       ///< share of the light that is mirrored, times how sharply
     float mean;        ///< of the samples: luminance of the light over that of the albedo,
@@ -36,11 +36,12 @@ struct DenoiseGuideParams {
     uint next_capacity;   ///< room in the next level's
     uint light_capacity;  ///< room in the queue of shadow rays
     vec2 jitter;
-    uint first_row;     ///< of the band, a multiple of 8
+    uint first_row;  ///< of the band, a multiple of 8
     uint sample_index;
     uint samples_lobes;  ///< 1: of a rough lobe one direction is drawn
-    uint finds_light;    ///< 1: shadow rays or diffuse bounces bring light to what scatters it, where the draw is not zero
-    float limit;         ///< of a sample's light (PictureSettings::clamp)
+    uint
+        finds_light;  ///< 1: shadow rays or diffuse bounces bring light to what scatters it, where the draw is not zero
+    float limit;      ///< of a sample's light (PictureSettings::clamp)
 };
 SHARED_SIZE(DenoiseGuideParams, 44);
 
@@ -51,8 +52,8 @@ struct DenoiseParams {
 };
 SHARED_SIZE(DenoiseParams, 12);
 
-/// Of a pixel, where the surface that its guide comes from was in the picture of the moment before; of sample 0, whose ray
-/// goes through the pixel's centre.
+/// Of a pixel, where the surface that its guide comes from was in the picture of the moment before; of sample 0, whose
+/// ray goes through the pixel's centre.
 struct DenoiseMotion {
     vec2 motion;  ///< pixels, to the right and down
     float depth;  ///< length of the path then
@@ -61,8 +62,8 @@ struct DenoiseMotion {
 SHARED_SIZE(DenoiseMotion, 16);
 #define DENOISE_NO_OBJECT 0xffffffffu
 
-/// What the surfaces on a camera ray's way, mirrors and glass, make of a point of the moment before, relative to the eye
-/// then: where the camera saw its image. The way is straightened at each of them, as it stood then.
+/// What the surfaces on a camera ray's way, mirrors and glass, make of a point of the moment before, relative to the
+/// eye then: where the camera saw its image. The way is straightened at each of them, as it stood then.
 struct DenoiseImage {
     vec3 x, y, z;  ///< columns of the linear part
     vec3 origin;
@@ -101,15 +102,15 @@ struct DenoiseTrail {
 };
 SHARED_SIZE(DenoiseTrail, 52);
 
-// Denoise::temporal: how many moments before the picture's own are rendered and looked at. Each costs 44 bytes a pixel and
-// a picture where a run begins; with six pictures in all a sixth of the variance is left.
+// Denoise::temporal: how many moments before the picture's own are rendered and looked at. Each costs 44 bytes a pixel
+// and a picture where a run begins; with six pictures in all a sixth of the variance is left.
 #define DENOISE_WARM_UP 5
-// A picture has the random numbers of its number modulo this: any DENOISE_WARM_UP + 1 in a row differ, and where nothing
-// moves all pictures are the same. Between the seeds of one and the next:
+// A picture has the random numbers of its number modulo this: any DENOISE_WARM_UP + 1 in a row differ, and where
+// nothing moves all pictures are the same. Between the seeds of one and the next:
 #define DENOISE_SEEDS (DENOISE_WARM_UP + 1)
 #define DENOISE_SEED_STEP 0x9e3779b9u
-// What was seen then is the same surface if the cosine between the normals is at least this, and the depths differ by at
-// most this share and as the surface rises over as many pixels.
+// What was seen then is the same surface if the cosine between the normals is at least this, and the depths differ by
+// at most this share and as the surface rises over as many pixels.
 #define DENOISE_SAME_NORMAL 0.9
 #define DENOISE_SAME_DEPTH 0.02
 #define DENOISE_SAME_RISE 1.5
@@ -139,7 +140,8 @@ SHARED_SIZE(DenoiseTrail, 52);
 #define DENOISE_NORMAL_FALL 256.0
 #define DENOISE_GLOSS_FALL 8.0
 #define DENOISE_ALBEDO_FALL 2.0
-// by the difference to the depth of the plane through the pixel, over these shares of that plane's rise and of the depth;
+// by the difference to the depth of the plane through the pixel, over these shares of that plane's rise and of the
+// depth;
 #define DENOISE_SLOPE_TOLERANCE 0.3
 #define DENOISE_DEPTH_TOLERANCE 0.002
 // by the difference of luminances, over this many standard deviations.
@@ -149,8 +151,8 @@ SHARED_SIZE(DenoiseTrail, 52);
 // A luminance is an outlier above this many times the mean and this many standard deviations of the pixels around that
 // show the same, of which there are at least so many; of several samples only if its own standard deviation is a
 // share of what it is above the mean. It is then brought down to fewer deviations above that mean. ToyCar under an HDR
-// has much of its light in few pixels at one sample: with half of these deviations it lost 5 to 13 % of it. (Without any
-// limit it lost up to 11 %, for the difference of luminances keeps such pixels from their neighbours, too.)
+// has much of its light in few pixels at one sample: with half of these deviations it lost 5 to 13 % of it. (Without
+// any limit it lost up to 11 %, for the difference of luminances keeps such pixels from their neighbours, too.)
 #define DENOISE_OUTLIER_MEANS 2.0
 #define DENOISE_OUTLIER_DEVIATIONS 8.0
 #define DENOISE_OUTLIER_LEFT 4.0

@@ -17,11 +17,6 @@ struct Lobe {
 /// Is it a mirror?
 bool isMirror(Lobe lobe) { return lobe.roughness < MIRROR_ROUGHNESS; }
 
-/// Has the surface neither a lobe that holds a lamp, nor anything that scatters, as mirrors and clear glass?
-bool ignoresLight(Surface s, Material m) {
-    return m.roughness < MIRROR_ROUGHNESS && (m.metallic == 1.0 || m.transmission == 1.0) && m.clearcoat == 0.0 && m.sheen_color == vec3(0) && s.stretch == 0.0;
-}
-
 Lobe roundLobe(vec3 normal, float roughness) { return Lobe(normal, vec3(0), vec2(roughness * roughness), roughness, roughness, 1.0, true); }
 
 /// Of a surface below its coat (KHR_materials_anisotropy); `view`: towards the viewer.

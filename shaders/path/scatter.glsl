@@ -151,6 +151,7 @@ Ray lightRay(Surface s, vec3 direction, bool seeps) {
     return seeps ? leavingRay(s, s.position, direction, infinity) : shadowRay(s, direction, infinity);
 }
 
+#include "path/ignores_light.glsl"
 #include "path/light_rays.glsl"
 
 /// The surface that a shadow ray to a lamp starts on; glass is opaque to the ray where photons go through it.

@@ -55,12 +55,11 @@ PictureStats traced_picture() {
 
 TEST(StatsJson, AllOfATracedPictureInOrder) {
     const Json json = picture_json(traced_picture());
-    EXPECT_EQ(keys_of(json),
-              (std::vector<std::string>{"tracer",   "device",   "kind",       "driver",    "api_version",
-                                        "commit",   "image",    "samples",    "triangles", "timed",
-                                        "frame_ms", "build_ms", "passes",     "rays",      "mrays_per_second",
-                                        "ldc",      "moved",    "visibility", "hit",       "memory_bytes",
-                                        "memory",   "redone"}));
+    EXPECT_EQ(keys_of(json), (std::vector<std::string>{
+                                 "tracer",     "device", "kind",         "driver",           "api_version", "commit",
+                                 "image",      "camera", "samples",      "triangles",        "timed",       "frame_ms",
+                                 "build_ms",   "passes", "rays",         "mrays_per_second", "ldc",         "moved",
+                                 "visibility", "hit",    "memory_bytes", "memory",           "redone"}));
     EXPECT_EQ(json["tracer"], "ldc");
     EXPECT_EQ(json["api_version"], "1.3.250");
     EXPECT_EQ(json["image"], (Json{64, 48}));
@@ -119,8 +118,8 @@ TEST(StatsJson, TheReferenceHasNoDevice) {
     stats.render.passes = {{"build/bvh", 1}, {"trace and shade", 2}};
     const Json json = picture_json(stats);
     EXPECT_EQ(keys_of(json), (std::vector<std::string>{"tracer", "device", "kind", "driver", "api_version", "commit",
-                                                       "image", "samples", "triangles", "timed", "frame_ms", "build_ms",
-                                                       "passes", "rays", "hit"}));
+                                                       "image", "camera", "samples", "triangles", "timed", "frame_ms",
+                                                       "build_ms", "passes", "rays", "hit"}));
     EXPECT_EQ(json["tracer"], "reference");
     EXPECT_TRUE(json["api_version"].is_null());
     EXPECT_EQ(json["hit"], "double");
