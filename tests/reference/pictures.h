@@ -40,8 +40,7 @@ class PictureTest : public testing::Test {
         const Geometry geometry = flatten(stage.scene);
         const Moment rest = at_rest(stage.scene);
         const Emitters emitters = emitters_of(stage.scene, assemble(stage.scene, rest, motion_of(stage.scene, "")));
-        return PathTracer(stage.scene, rest, geometry, environment, emitters, kPrecision)
-            .render(settings, {}, threads);
+        return PathTracer(stage.scene, rest, geometry, environment, emitters, kPrecision).render(settings, {}, threads);
     }
     /// The same while somebody looks on.
     Picture watched(const Stage& stage, const RenderSettings& settings, const PictureWatch& watch) {
