@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${1:-build/release/peelray}
 [ -x "$program" ] || { echo "figures: there is no $program: run 'make build' first" >&2; exit 1; }
-command -v python3 > /dev/null || { echo "figures: python3 is missing: apt-get install python3" >&2; exit 1; }
+python3 -c 'import numpy' 2> /dev/null || { echo "figures: python3 or its numpy is missing: apt-get install python3-numpy" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -13,7 +13,7 @@ trap 'rm -rf "$work"' EXIT
 figure() {
     local name=$1 scene=$2
     shift 2
-    "$program" render "$scene" -o "docs/$name.png" --size 400x320 --spp 4 "$@"
+    "$program" render "$scene" -o "docs/$name.png" --size 400x320 --spp 4 --tracer ldc "$@"
 }
 
 # The auxiliary pictures are EXR files of 32-bit floats; this turns one into a PNG that a browser shows.
@@ -21,47 +21,13 @@ aov_to_png() {  # KIND FILE.exr FILE.png
     python3 - "$@" << 'PYTHON'
 import struct, sys, zlib
 
+sys.path.insert(0, "bench")
+from exr import read
+
 kind, source, target = sys.argv[1:]
-data = open(source, "rb").read()
-assert struct.unpack_from("<II", data) == (20000630, 2), "a single-part EXR of scan lines"
-at, channels, size = 8, [], None
-while data[at]:  # attributes: name, type, bytes, value
-    end = data.index(0, at)
-    name, at = data[at:end].decode(), end + 1
-    at = data.index(0, at) + 1
-    length, at = struct.unpack_from("<I", data, at)[0], at + 4
-    if name == "channels":
-        p = at
-        while data[p]:
-            end = data.index(0, p)
-            channels.append(data[p:end].decode())
-            assert struct.unpack_from("<I", data, end + 1)[0] == 2, "32-bit floats"
-            p = end + 17
-    if name == "dataWindow":
-        box = struct.unpack_from("<4i", data, at)
-        size = box[2] - box[0] + 1, box[3] - box[1] + 1
-    if name == "compression":
-        assert data[at] == 3, "ZIP, 16 lines a block"
-    at += length
-width, height = size
-planes = {c: [] for c in channels}
-for offset in struct.unpack_from(f"<{(height + 15) // 16}Q", data, at + 1):
-    y, length = struct.unpack_from("<iI", data, offset)
-    lines = min(16, height - y)
-    block, plain = data[offset + 8:offset + 8 + length], lines * width * 4 * len(channels)
-    if length < plain:
-        block = bytearray(zlib.decompress(block))
-        for i in range(1, plain):
-            block[i] = (block[i - 1] + block[i] - 128) & 255
-        half = (plain + 1) // 2
-        whole = bytearray(plain)
-        whole[0::2], whole[1::2] = block[:half], block[half:]
-        block = bytes(whole)
-    values = struct.unpack(f"<{plain // 4}f", block)
-    for line in range(lines):
-        for number, channel in enumerate(channels):
-            first = (line * len(channels) + number) * width
-            planes[channel] += values[first:first + width]
+pictures = read(source)
+planes = {channel: picture.ravel().tolist() for channel, picture in pictures.items()}
+height, width = next(iter(pictures.values())).shape
 
 srgb = lambda v: round(255 * (12.92 * v if v <= 0.0031308 else 1.055 * min(v, 1.0) ** (1 / 2.4) - 0.055))
 if kind == "albedo":

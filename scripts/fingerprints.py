@@ -34,10 +34,12 @@ def cases():
     out = {}
 
     def render(name, scene, *more, picture="picture.exr"):
+        if "--tracer" not in more:
+            more += ("--tracer", "ldc")
         out[name] = ["render", f"builtin:{scene}", "-o", "{out}/" + picture, *size, "--stats", "{out}/stats.json", *more]
 
     for scene in SCENES:
-        for tracer in ["reference", "cubemap", "khr", "none"]:
+        for tracer in ["cpu", "reference", "cubemap", "khr", "none"]:
             render(f"{scene} {tracer}", scene, "--tracer", tracer)
         for builder in BUILDERS:
             for traversal in TRAVERSALS:
