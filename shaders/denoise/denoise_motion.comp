@@ -76,7 +76,7 @@ DenoiseImage straightened(DenoiseImage image, Ray incoming, Hit hit, vec3 direct
     const vec3 side = cross(b - a, c - a), ahead = normalize(incoming.direction), behind = normalize(direction);
     const bool through = dot(side, ahead) * dot(side, behind) >= 0.0;
     if (through && dot(ahead, behind) > 1.0 - 1e-6) return image;
-    placedBefore(hit.instance, hit.triangle, params.first_moving, params.eye, d, e, f);
+    placedBefore(hit.instance, hit.triangle, params.before.first_moving, params.before.eye, d, e, f);
     const mat3 linear = mat3(image.x, image.y, image.z),
                turn = straightened(carried(ahead, a, b, c, d, e, f), carried(behind, a, b, c, d, e, f), through),
                both = linear * turn;
@@ -87,13 +87,13 @@ DenoiseImage straightened(DenoiseImage image, Ray incoming, Hit hit, vec3 direct
 /// `point`: where the camera sees the hit now, relative to its eye.
 DenoiseMotion motionOf(Hit hit, DenoiseImage image, vec3 point) {
     vec3 a, b, c;
-    placedBefore(hit.instance, hit.triangle, params.first_moving, params.eye, a, b, c);
+    placedBefore(hit.instance, hit.triangle, params.before.first_moving, params.before.eye, a, b, c);
     vec3 before = mixed(a, b, c, weightsOf(hit));
     if (!camera) before = mat3(image.x, image.y, image.z) * before + image.origin;
-    const bool orthographic = params.orthographic != 0u;
-    const float ahead = product(before, params.forward);
-    if (!orthographic && !(ahead > params.near)) return kNoMotion;
-    const vec2 motion = placeInPicture(before, params.right, params.up, params.forward, orthographic) -
+    const bool orthographic = params.before.orthographic != 0u;
+    const float ahead = product(before, params.before.forward);
+    if (!orthographic && !(ahead > params.before.near)) return kNoMotion;
+    const vec2 motion = placeInPicture(before, params.before.right, params.before.up, params.before.forward, orthographic) -
                         placeInPicture(point, frame[0].right, frame[0].up, frame[0].forward, frame[0].orthographic != 0u);
     const uint object = instances[hit.instance].info.first_object + triangle_objects[hit.triangle];
     return DenoiseMotion(vec2(motion.x, -motion.y), orthographic ? ahead : length(before), object);

@@ -3,6 +3,7 @@
 #define PEELRAY_DENOISE_PARAMS_H
 
 #include "common/shared.h"
+#include "path/camera_before.h"
 
 #ifdef __cplusplus
 namespace peelray {
@@ -71,15 +72,9 @@ struct DenoiseImage {
 };
 SHARED_SIZE(DenoiseImage, 52);
 
-/// The camera at the moment before, as in MotionParams, and a level of the tree of rays.
+/// The camera at the moment before, and a level of the tree of rays.
 struct DenoiseMotionParams {
-    vec3 eye;
-    float near;
-    vec3 right;
-    uint orthographic;
-    vec3 up;
-    uint first_moving;  ///< from this vertex on positions change from moment to moment
-    vec3 forward;
+    CameraBefore before;
     uint capacity;  ///< level 0's rays
     vec2 jitter;
     uint first_row;       ///< of the band, a multiple of 8

@@ -27,11 +27,11 @@ vec2 motionOf(Hit hit) {
     vec3 a, b, c;
     placedTriangle(hit.instance, hit.triangle, frame[0].eye, a, b, c);
     const vec3 now = mixed(a, b, c, weights);
-    placedBefore(hit.instance, hit.triangle, params.first_moving, params.eye, a, b, c);
+    placedBefore(hit.instance, hit.triangle, params.before.first_moving, params.before.eye, a, b, c);
     const vec3 before = mixed(a, b, c, weights);
-    const bool orthographic = params.orthographic != 0u;
-    if (!orthographic && !(product(before, params.forward) > params.near)) return vec2(0);  // behind the camera
-    return placeInPicture(before, params.right, params.up, params.forward, orthographic) -
+    const bool orthographic = params.before.orthographic != 0u;
+    if (!orthographic && !(product(before, params.before.forward) > params.before.near)) return vec2(0);  // behind the camera
+    return placeInPicture(before, params.before.right, params.before.up, params.before.forward, orthographic) -
            placeInPicture(now, frame[0].right, frame[0].up, frame[0].forward, frame[0].orthographic != 0u);
 }
 

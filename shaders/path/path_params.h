@@ -3,6 +3,7 @@
 #define PEELRAY_PATH_PARAMS_H
 
 #include "common/shared.h"
+#include "path/camera_before.h"
 
 #ifdef __cplusplus
 namespace peelray {
@@ -135,15 +136,9 @@ struct RaySetupParams {
 };
 SHARED_SIZE(RaySetupParams, 24);
 
-/// The camera at the moment before, as in Frame, and a band of the picture.
+/// The camera at the moment before, and a band of the picture.
 struct MotionParams {
-    vec3 eye;
-    float near;
-    vec3 right;
-    uint orthographic;
-    vec3 up;
-    uint first_moving;  ///< from this vertex on positions change from moment to moment
-    vec3 forward;
+    CameraBefore before;
     uint capacity;   ///< level 0's hits
     uint first_row;  ///< of the band, a multiple of 8
 };

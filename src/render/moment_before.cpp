@@ -8,13 +8,13 @@ void MomentBefore::look_back(FrameState& f, const Scene& source, const Moment& b
                              const Assembly& assembly, const View& view) {
     const std::vector<Assembly::Body>& bodies = assembly.bodies;
     const bool deforms = assembly.fixed < bodies.size();
-    params_.eye = view.eye;
-    params_.near = view.near;
-    params_.right = view.right;
-    params_.orthographic = view.orthographic;
-    params_.up = view.up;
-    params_.first_moving = deforms ? bodies[assembly.fixed].first_vertex : ~0u;
-    params_.forward = view.forward;
+    camera_.eye = view.eye;
+    camera_.near = view.near;
+    camera_.right = view.right;
+    camera_.orthographic = view.orthographic;
+    camera_.up = view.up;
+    camera_.first_moving = deforms ? bodies[assembly.fixed].first_vertex : ~0u;
+    camera_.forward = view.forward;
 
     f.scene.pose(f.commands, source, before);
     f.scene.record_animation(f.commands, f.tracer->bodies());
@@ -23,7 +23,7 @@ void MomentBefore::look_back(FrameState& f, const Scene& source, const Moment& b
     ensure_size(f.device, transforms_, "where instances stood", instances);
     f.commands.copy(f.scene.instances.transforms(), transforms_, instances);
     if (deforms) {
-        const uint64_t first = params_.first_moving * sizeof(glm::vec3),
+        const uint64_t first = camera_.first_moving * sizeof(glm::vec3),
                        bytes = (bodies.back().first_vertex + bodies.back().vertices) * sizeof(glm::vec3) - first;
         ensure_size(f.device, positions_, "where vertices were", bytes);
         f.commands.copy(f.scene.triangles.positions, positions_, bytes, first);

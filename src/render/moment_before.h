@@ -3,7 +3,7 @@
 
 #include "assembly/assembly.h"
 #include "gpu/commands.h"
-#include "path/path_params.h"
+#include "path/camera_before.h"
 #include "scene/moment.h"
 #include "scene/picture.h"
 
@@ -19,13 +19,13 @@ class MomentBefore {
     void look_back(FrameState& f, const Scene& source, const Moment& before, const Moment& now,
                    const Assembly& assembly, const View& view);
 
-    /// The camera then, and which vertices are in positions(); a pass adds its band.
-    const MotionParams& params() const { return params_; }
+    /// And which vertices are in positions().
+    const CameraBefore& camera() const { return camera_; }
     const Buffer& positions() const { return positions_; }
     const Buffer& transforms() const { return transforms_; }
 
   private:
-    MotionParams params_{};
+    CameraBefore camera_{};
     Buffer positions_;   ///< vec3 of each vertex that changes from moment to moment
     Buffer transforms_;  ///< GpuTransform of each instance
 };

@@ -8,9 +8,7 @@ void MotionPicture::prepare(FrameState& f) {
 }
 
 void MotionPicture::record(FrameState& f, const LevelParams& band) const {
-    MotionParams params = f.before.params();
-    params.capacity = band.capacity;
-    params.first_row = band.first_row;
+    const MotionParams params{f.before.camera(), band.capacity, band.first_row};
     f.commands.run(f.device.pass("aov_motion"),
                    {{"frame", f.view.target.frame},
                     {"positions", f.scene.triangles.positions},

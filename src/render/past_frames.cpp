@@ -38,18 +38,11 @@ PastFrames::Kept& PastFrames::kept(int64_t number) {
 void PastFrames::record_motion(FrameState& f, uint32_t level, uint32_t first_row, const Buffer& links) {
     ensure_size(device_, images_, "images in mirrors in the denoiser",
                 std::max<uint64_t>(images_.bytes(), uint64_t(f.bands.most_pixels()) * sizeof(DenoiseImage)));
-    const MotionParams& before = f.before.params();
     const PathQueues& queues = f.queues;
     const PathLevel &here = queues.level(level), &incoming = queues.level(level > 0 ? level - 1 : 0);
     const bool camera_kept = f.layered(), kept = level > 0 || camera_kept, incoming_kept = level > 1 || camera_kept;
     DenoiseMotionParams p{};
-    p.eye = before.eye;
-    p.near = before.near;
-    p.right = before.right;
-    p.orthographic = before.orthographic;
-    p.up = before.up;
-    p.first_moving = before.first_moving;
-    p.forward = before.forward;
+    p.before = f.before.camera();
     p.capacity = f.bands.pixels(first_row);
     p.jitter = sample_position(0);
     p.first_row = first_row;
