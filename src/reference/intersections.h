@@ -1,6 +1,7 @@
 // What rays of the CPU tracer meet of the scene's triangles. Private to src/reference.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,13 @@ struct Hit {
 using Ray = OracleRay;
 using Hit = OracleHit;
 #endif
+
+/// By distance and number, each triangle once.
+inline void put_in_order(std::vector<Hit>& hits) {
+    std::ranges::sort(hits, {}, [](const Hit& hit) { return std::pair(hit.t, hit.triangle); });
+    const auto repeated = std::ranges::unique(hits, {}, &Hit::triangle);
+    hits.erase(repeated.begin(), repeated.end());
+}
 
 /// In double precision the oracle's hits, in single Embree's own. Throws Error if Embree runs out of memory.
 class Intersections {

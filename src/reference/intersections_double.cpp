@@ -1,6 +1,4 @@
 // The reference's hits: the oracle's.
-#include <algorithm>
-
 #include "reference/bvh.h"
 #include "reference/intersections.h"
 
@@ -36,9 +34,7 @@ std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_lig
         const bool shown = !is_single(hit.triangle) || comes_from_front(set.corners[index], ray.direction) != to_light;
         if (shown && is_present(hit.triangle, hit.u, hit.v)) hits.push_back(hit);
     }
-    std::ranges::sort(hits, {}, [](const Hit& hit) { return std::pair(hit.t, hit.triangle); });
-    const auto repeated = std::ranges::unique(hits, {}, &Hit::triangle);
-    hits.erase(repeated.begin(), repeated.end());
+    put_in_order(hits);
     return hits;
 }
 

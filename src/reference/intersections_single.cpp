@@ -1,10 +1,8 @@
 // Hits in single precision: Embree's, of triangles that it knows, watertight and without a decision of ours but for
 // holes, sides and what a ray starts on.
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 
-#include "base/error.h"
+#include "reference/embree_scene.h"
 #include "reference/intersections.h"
 #include "scene/picture.h"
 
@@ -71,9 +69,10 @@ Candidate candidate_of(const RTCFilterFunctionNArguments* args) {
 }
 
 void filter_nearest(const RTCFilterFunctionNArguments* args) {
-    const auto [query, ray, hit] = candidate_of(args);
+    const Candidate candidate = candidate_of(args);
+    const auto& [query, ray, hit] = candidate;
     const bool farther = ray.tfar > query.nearest || (ray.tfar == query.nearest && hit.primID > query.triangle);
-    if (farther || !Candidate{query, ray, hit}.counts()) {
+    if (farther || !candidate.counts()) {
         args->valid[0] = 0;
         return;
     }
@@ -111,22 +110,9 @@ RTCRay embree_ray(const Ray& ray) {
 
 }  // namespace
 
-struct Intersections::Impl : TriangleTraits {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-
+struct Intersections::Impl : TriangleTraits, EmbreeScene {
     Impl(const Scene& described, const Geometry& geometry);
-    ~Impl() {
-        if (scene) rtcReleaseScene(scene);
-        if (device) rtcReleaseDevice(device);
-    }
-    void check(size_t count) const;
 };
-
-void Intersections::Impl::check(size_t count) const {
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-        fail("Embree cannot build a BVH of {} triangles (error {}); is there enough memory?", count, int(error));
-}
 
 Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
     alpha = AlphaTest(described, geometry);
@@ -139,11 +125,7 @@ Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
                             (through ? see_through : 0));
     }
     if (count == 0) return;  // every ray misses
-    device = rtcNewDevice(nullptr);
-    if (!device)
-        fail("cannot start Embree (error {}); check the installed libembree3", int(rtcGetDeviceError(nullptr)));
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    start();
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Triangles of corners that are not there or not finite are hit by none.
     std::vector<glm::uvec3> corners = geometry.triangles;
@@ -159,11 +141,7 @@ Intersections::Impl::Impl(const Scene& described, const Geometry& geometry) {
     copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, corners);
     rtcSetGeometryIntersectFilterFunction(mesh, filter_nearest);
     rtcSetGeometryOccludedFilterFunction(mesh, filter_blocking);
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(scene, mesh);
-    rtcReleaseGeometry(mesh);
-    rtcCommitScene(scene);
-    check(count);
+    build(mesh, count);
 }
 
 Intersections::Intersections(const Scene& scene, const Geometry& geometry)
@@ -188,9 +166,7 @@ std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_lig
     query.all = &hits;
     RTCRayHit found{embree_ray(ray), {}};
     rtcIntersect1(impl_->scene, &query, &found);
-    std::ranges::sort(hits, {}, [](const Hit& hit) { return std::pair(hit.t, hit.triangle); });
-    const auto repeated = std::ranges::unique(hits, {}, &Hit::triangle);
-    hits.erase(repeated.begin(), repeated.end());
+    put_in_order(hits);
     return hits;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "base/infinity.h"
 #include "reference/bvh.h"
 
@@ -117,32 +116,14 @@ Query trace(const Bvh& bvh, const OracleRay& ray, Mode mode, uint32_t skip, bool
 Bvh::Bvh(const Geometry& geometry, const AlphaTest& alpha, const Sidedness& sides)
     : triangles(geometry), alpha(alpha), sides(sides) {
     if (triangles.ids.empty()) return;  // every ray misses
-    device = rtcNewDevice(nullptr);
-    if (!device)
-        fail("cannot start Embree (error {}); check the installed libembree3", int(rtcGetDeviceError(nullptr)));
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    start();
     RTCGeometry user = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(user, unsigned(triangles.ids.size()));
     rtcSetGeometryUserData(user, &triangles);
     rtcSetGeometryBoundsFunction(user, bounds, nullptr);
     rtcSetGeometryIntersectFunction(user, intersect);
     rtcSetGeometryOccludedFunction(user, occlude);
-    rtcCommitGeometry(user);
-    rtcAttachGeometry(scene, user);
-    rtcReleaseGeometry(user);
-    rtcCommitScene(scene);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-        fail("Embree cannot build a BVH of {} triangles (error {}); is there enough memory?", triangles.ids.size(),
-             int(error));
-    }
-}
-
-Bvh::~Bvh() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
+    build(user, triangles.ids.size());
 }
 
 Bvh::Found Bvh::nearest(const OracleRay& ray, uint32_t skip, bool to_light) const {
