@@ -12,11 +12,6 @@ void emitSky(uint slot, uint count, Surface s, Shade shade, SurfaceId from, vec3
 
 uint nextFilteredSize(uint size, uint least) { return size > least ? max(size / 2u, least) : size; }
 
-vec3 filteredTexel(uint first, uvec2 size, int x, int y) {
-    const uint column = uint((x + int(size.x)) % int(size.x)), row = uint(clamp(y, 0, int(size.y) - 1));
-    return lookups[first + row * size.x + column].rgb;
-}
-
 vec3 filteredLevel(vec2 uv, uint level) {
     uint first = frame[0].filtered_first;
     uvec2 size = frame[0].filtered_size;
@@ -24,11 +19,7 @@ vec3 filteredLevel(vec2 uv, uint level) {
         first += size.x * size.y;
         size = uvec2(nextFilteredSize(size.x, 2u * FILTERED_LEAST_ROWS), nextFilteredSize(size.y, FILTERED_LEAST_ROWS));
     }
-    const vec2 p = uv * vec2(size) - 0.5, f = fract(p);
-    const ivec2 i = ivec2(floor(p));
-    const vec3 top = mix(filteredTexel(first, size, i.x, i.y), filteredTexel(first, size, i.x + 1, i.y), f.x);
-    const vec3 bottom = mix(filteredTexel(first, size, i.x, i.y + 1), filteredTexel(first, size, i.x + 1, i.y + 1), f.x);
-    return mix(top, bottom, f.y);
+    return environmentPicture(uv, first - TABLES_END, size);
 }
 
 /// What a lobe of this alpha around a direction sees, without the spot that a lamp stands for. Below the first level's alpha the image

@@ -58,10 +58,7 @@ struct Coarse {
 
     /// Between texels, as tracers look levels up; x and y in [0, 1].
     glm::dvec3 at(double x, double y) const {
-        return bilinear(glm::dvec2(x * width, y * height), [&](int i, int j) {
-            const auto column = uint32_t(i + int(width)) % width;
-            return texels[size_t(std::clamp(j, 0, int(height) - 1)) * width + column];
-        });
+        return bilinear_around(glm::dvec2(x, y), width, height, [&](size_t i) { return texels[i]; });
     }
 };
 

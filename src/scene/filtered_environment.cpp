@@ -32,10 +32,7 @@ struct Map {
     }
     glm::dvec3 at(const glm::dvec3& d) const {
         const glm::dvec2 place(0.5 + std::atan2(d.x, -d.z) / (2 * kPi), std::acos(std::clamp(d.y, -1.0, 1.0)) / kPi);
-        return bilinear(place * glm::dvec2(width, height), [&](int x, int y) {
-            const uint32_t column = uint32_t(x + int(width)) % width;
-            return glm::dvec3(texels[size_t(std::clamp(y, 0, int(height) - 1)) * width + column]);
-        });
+        return bilinear_around(place, width, height, [&](size_t i) { return glm::dvec3(texels[i]); });
     }
 };
 

@@ -1,6 +1,7 @@
 // Texture lookups in double or single precision (T), by the rules of shaders/common/textures.glsl.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/scene.h"
@@ -14,6 +15,16 @@ auto bilinear(const glm::vec<2, T>& p, Fetch fetch) {
     const int x = int(std::floor(q.x)), y = int(std::floor(q.y));
     return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
                     f.y);
+}
+
+/// The same at a place in [0, 1]² of an equirectangular picture, whose columns go round; `texel(i)`: counted row by
+/// row.
+template <typename T, typename Texel>
+auto bilinear_around(const glm::vec<2, T>& place, uint32_t width, uint32_t height, Texel texel) {
+    return bilinear(place * glm::vec<2, T>(width, height), [&](int x, int y) {
+        const int column = x < 0 ? x + int(width) : x >= int(width) ? x - int(width) : x;
+        return texel(size_t(std::clamp(y, 0, int(height) - 1)) * width + size_t(column));
+    });
 }
 
 /// Linear colour of one level; `nearest`: of the nearest texel, else bilinear.
