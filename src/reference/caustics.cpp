@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "reference/lamp_shape.h"
 #include "reference/optics.h"
 #include "reference/photon_flight.h"
 
@@ -82,11 +83,6 @@ Fates fates_of(real rests, real passes, real reflects, real refracts) {
     if (rests > 0) rests = others == 0 ? real(1) : std::max(rests / (rests + others), real(PHOTON_LEAST_END));
     const real rest = (1 - rests) / std::max(others, real(1));
     return {{rests, passes * rest, reflects * rest, refracts * rest}};
-}
-
-real within_range(const Light& light, real way) {
-    if (light.kind == Light::Kind::directional || !std::isfinite(light.range)) return 1;
-    return std::clamp(1 - square(square(way / real(light.range))), 0.0, 1.0);
 }
 
 }  // namespace

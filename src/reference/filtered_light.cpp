@@ -32,11 +32,8 @@ struct FilteredLevel {
 Vec3 Surroundings::filtered_level(const Vec3& d, uint32_t number) const {
     const FilteredEnvironment& filtered = environment_.filtered;
     const FilteredLevel level(filtered, number);
-    return bilinear(place(d) * Vec2(level.width, level.height), [&](int x, int y) {
-        const uint32_t column = uint32_t(x + int(level.width)) % level.width;
-        const size_t row = size_t(std::clamp(y, 0, int(level.height) - 1));
-        return Vec3(filtered.texels[level.first + row * level.width + column]);
-    });
+    return bilinear_around(place(d), level.width, level.height,
+                           [&](size_t i) { return Vec3(filtered.texels[level.first + i]); });
 }
 
 /// A level's lobe is twice as wide as that of the level before; narrower ones than the first's are between it and the

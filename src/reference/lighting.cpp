@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/lamp_shape.h"
 #include "reference/optics.h"
 #include "reference/shader.h"
 #include "reference/sheen.h"
@@ -145,16 +146,7 @@ Shader::Incidence Shader::incidence(const Light& light, uint32_t index, const Li
         if (distance == 0) return {};
         in.direction = to_light / distance;
         sine = std::min(1.0, radius / distance);
-        // KHR_lights_punctual: inverse square with a smooth end at the range, a squared ramp between the cones.
-        real strength = 1 / (distance * distance);
-        if (std::isfinite(light.range)) strength *= std::clamp(1 - square(square(distance / light.range)), 0.0, 1.0);
-        if (light.kind == Light::Kind::spot) {
-            const real inner = std::cos(real(light.inner_cone)), outer = std::cos(real(light.outer_cone));
-            const real cosine = glm::dot(Vec3(light.direction), -in.direction);
-            const real ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
-            strength *= ramp * ramp;
-        }
-        in.irradiance *= strength;
+        in.irradiance *= 1 / (distance * distance) * within_range(light, distance) * within_cone(light, -in.direction);
     }
     if (sine == 0 || in.irradiance == Vec3(0)) return in;
     const Vec2 u = random(at.path, RANDOM_LAMP + index);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/lamp_shape.h"
 #include "reference/optics.h"
 #include "reference/photon_flight.h"
 
@@ -118,12 +119,7 @@ class Source {
             const Vec3 off = on_disc(photon.direction, radius_, random(RANDOM_PHOTON_LAMP));
             photon.origin += off + photon.direction * std::sqrt(radius_ * radius_ - glm::dot(off, off));
         }
-        if (light_.kind == Light::Kind::spot) {
-            const real inner = std::cos(real(light_.inner_cone)), outer = std::cos(real(light_.outer_cone));
-            const real cosine = glm::dot(Vec3(light_.direction), photon.direction);
-            const real ramp = std::clamp((cosine - outer) / std::max(0.001, inner - outer), 0.0, 1.0);
-            photon.flux *= ramp * ramp;
-        }
+        photon.flux *= within_cone(light_, photon.direction);
         return photon;
     }
 

@@ -29,20 +29,4 @@ void PhotonTree::sort(size_t first, size_t end) {
     sort(middle + 1, end);
 }
 
-void PhotonTree::visit(const Vec3& point, const std::function<void(const RestingPhoton&, real)>& visit) const {
-    const auto search = [&](const auto& self, size_t first, size_t end) -> void {
-        if (first == end) return;
-        const size_t middle = first + (end - first) / 2;
-        const RestingPhoton& photon = photons_[middle];
-        const int axis = axes_[middle];
-        const real beyond = point[axis] - photon.position[axis];
-        if (beyond < radius_) self(self, first, middle);
-        const Vec3 way = photon.position - point;
-        const real distance2 = glm::dot(way, way);
-        if (distance2 < radius_ * radius_) visit(photon, distance2);
-        if (beyond > -radius_) self(self, middle + 1, end);
-    };
-    search(search, 0, photons_.size());
-}
-
 }  // namespace peelray::inline PRECISION

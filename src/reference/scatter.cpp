@@ -20,9 +20,8 @@ Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
 /// Part of a rough lobe that is traced; the rest sees the blurred environment. One sample cannot follow a wide lobe,
 /// unless the environment's light is drawn too.
 real Shader::traced_part(real roughness, real metallic) const {
-    if (context_.is_photon) return photons_follow(roughness, metallic) ? 1 : 0;
-    if (context_.samples_environment() || context_.filters_environment()) return 1;
-    if (context_.sampled()) return roughness < TRACED_ROUGHNESS || metallic > MOSTLY_METAL ? 1 : 0;
+    if (!context_.is_photon && (context_.samples_environment() || context_.filters_environment())) return 1;
+    if (context_.sampled()) return photons_follow(roughness, metallic) ? 1 : 0;
     const real x =
         std::clamp((roughness - FADE_FIRST_ROUGHNESS) / (FADE_LAST_ROUGHNESS - FADE_FIRST_ROUGHNESS), 0.0, 1.0);
     return 1 - x * x * (3 - 2 * x);

@@ -13,7 +13,6 @@ namespace {
 
 /// Takes the first of two ways with the chance `first`; what is left of the random number is one again.
 bool choose_first(real& random, real first) {
-    constexpr real below_one = 1 - std::numeric_limits<real>::epsilon();
     const bool taken = random < first;
     random = std::min(taken ? random / first : (random - first) / (1 - first), below_one);
     return taken;
@@ -39,11 +38,7 @@ Vec3 Surroundings::level(const Vec2& uv, uint32_t level) const {
 
 /// A picture among the texels, between them.
 Vec3 Surroundings::picture(const Vec2& uv, size_t offset, uint32_t width, uint32_t height) const {
-    return bilinear(uv * Vec2(width, height), [&](int x, int y) {
-        const int column = x < 0 ? x + int(width) : x >= int(width) ? x - int(width) : x;
-        const int row = std::clamp(y, 0, int(height) - 1);
-        return Vec3(environment_.texels[offset + size_t(row) * width + size_t(column)]);
-    });
+    return bilinear_around(uv, width, height, [&](size_t i) { return Vec3(environment_.texels[offset + i]); });
 }
 
 Vec3 Surroundings::radiance(const Vec3& d, real blur) const {

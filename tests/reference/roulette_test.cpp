@@ -6,6 +6,19 @@ namespace {
 
 class RouletteTest : public PictureTest {
   protected:
+    /// Of what a ball reflects inside, each path brings little and all together a few hundredths.
+    static Stage glass_ball() {
+        Stage stage;
+        Material m = thin_glass();
+        m.thickness = 1;
+        stage.add(sphere({0, 0, 0}, 1, 32), m);
+        return stage;
+    }
+    static RenderSettings settings_for_ball() {
+        RenderSettings settings = settings_for(orthographic({0, 0, 4}, {0, 0, 0}, 1.9f), 32);
+        settings.bounces = 8;
+        return settings;
+    }
     /// Means over the picture's pixels, with as many samples as roulette begins at, and with fewer.
     void expect_the_same_mean(const Stage& stage, const Environment& environment, RenderSettings settings,
                               double tolerance) {
@@ -18,26 +31,14 @@ class RouletteTest : public PictureTest {
 };
 
 TEST_F(RouletteTest, WhatGlassReflectsIsThereInTheMean) {
-    // Of what a ball reflects inside, each path brings little and all together a few hundredths.
-    Stage stage;
-    Material m = thin_glass();
-    m.thickness = 1;
-    stage.add(sphere({0, 0, 0}, 1, 32), m);
-    RenderSettings settings = settings_for(orthographic({0, 0, 4}, {0, 0, 0}, 1.9f), 32);
-    settings.bounces = 8;
-    expect_the_same_mean(stage, white, settings, 0.001);
+    expect_the_same_mean(glass_ball(), white, settings_for_ball(), 0.001);
 }
 
 TEST_F(RouletteTest, ClampedSamplesLoseNothingToIt) {
     // No sample is brighter than the world, unless it stands for others.
-    Stage stage;
-    Material m = thin_glass();
-    m.thickness = 1;
-    stage.add(sphere({0, 0, 0}, 1, 32), m);
-    RenderSettings settings = settings_for(orthographic({0, 0, 4}, {0, 0, 0}, 1.9f), 32);
-    settings.bounces = 8;
+    RenderSettings settings = settings_for_ball();
     settings.clamp = 1.01f;
-    expect_the_same_mean(stage, white, settings, 0.001);
+    expect_the_same_mean(glass_ball(), white, settings, 0.001);
 }
 
 TEST_F(RouletteTest, DimEmittersLightInTheMean) {
