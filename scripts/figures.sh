@@ -82,6 +82,10 @@ for bounces in 0 1 4; do figure "frame_bounces_$bounces" builtin:glass --bounces
 figure scene_teapots builtin:teapots
 figure scene_tree builtin:tree
 figure scene_leaves builtin:leaves
+figure scene_desk builtin:desk --spp 16
+figure scene_kitchen builtin:kitchen
+figure scene_bricks builtin:bricks
+figure scene_cloth builtin:cloth --time 2
 figure scene_blob builtin:blob:20000
 "$program" render builtin:walker -o docs/scene_walker.png --size 260x208 --spp 4 --animation walk --time 1.4
 figure scene_waves builtin:waves --time 1.5

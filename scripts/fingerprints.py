@@ -21,7 +21,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-SCENES = ["teapots", "glass", "tree", "leaves", "room", "walker", "blob:8000", "waves:2000", "particles:200"]
+SCENES = ["teapots", "glass", "tree", "leaves", "room", "walker", "desk", "kitchen:3000", "bricks:3000", "cloth:2000", "blob:8000", "waves:2000",
+          "particles:200"]
 BUILDERS = ["compute", "abuffer", "peel"]
 TRAVERSALS = ["voxel", "two-level", "mipmap"]
 HITS = ["exact", "planar", "tolerance"]
@@ -66,7 +67,7 @@ def cases():
     render("teapots draws", "teapots", "--builder", "abuffer", "--routing", "draws")
     render("glass repeat", "glass", "--repeat", "3", "--rebuild")
     render("glass camera", "glass", "--eye", "1,2,4", "--look", "0,0.5,0", "--up", "0,1,0.2", "--fov", "30")
-    for scene in ["walker", "waves:2000", "particles:200"]:
+    for scene in ["walker", "cloth:2000", "waves:2000", "particles:200"]:
         for tracer in ["ldc", "cubemap", "reference", "none"]:
             render(f"{scene} {tracer} moment", scene, "--tracer", tracer, "--time", "0.7")
         render(f"{scene} frames", scene, "--frames", "3:6", "--fps", "10", picture="frame_%02d.png")

@@ -1,4 +1,4 @@
-// What moves vertices and instances: deform*.comp, water_*.comp, swarm.comp (src/render/deformer, generators).
+// What moves vertices and instances: deform*.comp, water_*.comp, cloth_surface.comp, swarm.comp (src/render/deformer, generators).
 #ifndef PEELRAY_MOTION_PARAMS_H
 #define PEELRAY_MOTION_PARAMS_H
 
@@ -66,6 +66,15 @@ struct GpuFloat {
     float radius;
 };
 SHARED_SIZE(GpuFloat, 20);
+
+/// See Cloth of src/scene/generated.h.
+struct ClothParams {
+    uint across, along;  ///< cells of the mesh
+    uint points;         ///< of the net, each way
+    uint first_vertex;
+    uint body;
+};
+SHARED_SIZE(ClothParams, 20);
 
 struct SwarmParams {
     uint bodies;

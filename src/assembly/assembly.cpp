@@ -78,10 +78,11 @@ class Assembler {
         if (!motion_.generates) return;
         for (const Swarm& swarm : scene_.generated.swarms) generated_.insert(swarm.nodes.begin(), swarm.nodes.end());
         for (const Water& water : scene_.generated.waters) {
-            waters_.push_back(water.node);
+            surfaces_.push_back(water.node);
             for (const Water::Float& f : water.floats) generated_.insert(f.node);
         }
-        out_.waters.resize(waters_.size());
+        for (const Cloth& cloth : scene_.generated.cloths) surfaces_.push_back(cloth.node);
+        out_.surfaces.resize(surfaces_.size());
     }
 
     /// The nearest node above each one, itself included, that an animation moves, and how the node stands in it.
@@ -124,13 +125,13 @@ class Assembler {
         check_size(scene_, vertices, out_.shown);
     }
 
-    bool is_water(int node) const { return std::find(waters_.begin(), waters_.end(), node) != waters_.end(); }
+    bool is_surface(int node) const { return std::find(surfaces_.begin(), surfaces_.end(), node) != surfaces_.end(); }
 
     bool deforms(const Place& place) const {
         const Node& node = scene_.nodes[size_t(place.node)];
         const Primitive& primitive = primitive_of(place);
         if (generated_.contains(place.node)) return false;
-        if (is_water(place.node)) return true;
+        if (is_surface(place.node)) return true;
         if (!primitive.targets.empty() && motion_.morphs[size_t(place.node)]) return true;
         if (!primitive.joints.empty() && node.skin >= 0) {
             const std::vector<int>& joints = scene_.skins[size_t(node.skin)].joints;
@@ -305,8 +306,9 @@ class Assembler {
                                         uint32_t(out_.positions.size()),
                                         uint32_t(out_.triangles.size()),
                                         vertices.mirrors};
-            if (is_water(place.node))
-                out_.waters[size_t(std::find(waters_.begin(), waters_.end(), place.node) - waters_.begin())] = piece;
+            if (is_surface(place.node))
+                out_.surfaces[size_t(std::find(surfaces_.begin(), surfaces_.end(), place.node) - surfaces_.begin())] =
+                    piece;
             else
                 out_.pieces.push_back(piece);
             append(place, vertices, first_id(place), objects_[size_t(place.node)]);
@@ -329,7 +331,7 @@ class Assembler {
     std::vector<uint32_t> objects_;
     bool has_colors_ = false, has_tangents_ = false;
     std::set<int> generated_;                  ///< nodes that are placed by passes of their own
-    std::vector<int> waters_;                  ///< nodes of Scene::generated.waters
+    std::vector<int> surfaces_;                ///< nodes as of Assembly::surfaces
     std::map<int, std::vector<Place>> fixed_;  ///< by anchor
     std::map<int, std::vector<int>> shared_;   ///< nodes by mesh
     std::map<std::pair<int, int>, std::vector<Place>> deforming_;

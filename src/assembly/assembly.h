@@ -45,7 +45,7 @@ struct Assembly {
     std::vector<Instance> instances;  ///< in the order of their bodies
     std::vector<Piece> pieces;        ///< in the order of their vertices
     bool generates = false;           ///< what is generated moves: Scene::generated
-    std::vector<Piece> waters;        ///< of Scene::generated.waters, while they move
+    std::vector<Piece> surfaces;      ///< of Scene::generated.waters, then of its cloths, while they move
     uint64_t shown = 0;               ///< triangles with all instances
 };
 

@@ -34,8 +34,8 @@ bool is_builtin(const std::string& name) {
 std::vector<std::string> default_bench_scenes() {
     std::vector<std::string> names;
     for (const PaperScene& scene : paper_scenes()) names.emplace_back(scene.name);
-    for (const char* name :
-         {"blob:8000", "blob:120000", "blob:300000", "blob:1000000", "blob:3000000", "blob:10000000", "room"})
+    for (const char* name : {"blob:8000", "blob:120000", "blob:300000", "blob:1000000", "blob:3000000", "blob:10000000",
+                             "room", "desk", "kitchen", "bricks", "cloth"})
         names.emplace_back(name);
     return names;
 }
@@ -73,6 +73,10 @@ BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings
     const bool builtin = is_builtin(name);
     p.scene = builtin ? "builtin:" + without_builtin(name) : name;
     choice.shown = builtin ? p.scene : fs::path(name).filename().string();
+    if (without_builtin(name).starts_with("cloth")) {
+        p.animation = "wind";
+        p.time = 1.2;
+    }
     if (without_builtin(name).starts_with("blob")) {
         // A view and a lamp of its own, so that figures of different versions can be compared.
         p.eye = glm::vec3(0.9f, 1.1f, 2.9f);

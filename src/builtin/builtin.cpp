@@ -17,6 +17,10 @@ std::vector<BuiltinScene> builtin_scenes() {
             {"leaves", "two trees whose leaves are cut out of squares by alpha masks, on a mirroring floor"},
             {"room", "a closed room with lamps, a mirror, glass and a teapot on a table"},
             {"walker", "a figure that walks over a mirror, behind and in front of glass"},
+            {"desk", "a pocket watch with its movement on a desk in a room: from metres to tenths of a millimetre"},
+            {"kitchen", "finely shaped things apart on a table; kitchen:N for N triangles (8 to 10000000)"},
+            {"bricks", "a duck of toy bricks, as CAD exports them; bricks:N for N triangles (8 to 10000000)"},
+            {"cloth", "a sheet over a ball in wind; cloth:N for some N triangles of the sheet (8 to 10000000)"},
             {"blob:N", "a displaced metal sphere of N triangles (8 to 10000000) over a floor"},
             {"waves", "a pool with swimming things; waves:N for some N triangles of water (8 to 10000000)"},
             {"particles", "a fountain of small bodies over a mirror; particles:N for N of them (8 to 1000000)"}};
@@ -43,12 +47,19 @@ Scene make_builtin(std::string_view name) {
     if (name == "leaves") return make_leaves();
     if (name == "room") return make_room();
     if (name == "walker") return make_walker();
+    if (name == "desk") return make_desk();
     if (name == "waves") return make_waves(32'768);
     if (name == "particles") return make_particles(3'000);
+    if (name == "cloth") return make_cloth(32'768);
+    if (name == "bricks") return make_bricks(200'000);
+    if (name == "kitchen") return make_kitchen(200'000);
     if (name == "blob" || name.starts_with("blob:"))
         return make_blob(parse_count("blob", name.substr(std::min<size_t>(name.size(), 5)), 10'000'000));
     if (name.starts_with("waves:")) return make_waves(parse_count("waves", name.substr(6), 10'000'000));
     if (name.starts_with("particles:")) return make_particles(parse_count("particles", name.substr(10), 1'000'000));
+    if (name.starts_with("kitchen:")) return make_kitchen(parse_count("kitchen", name.substr(8), 10'000'000));
+    if (name.starts_with("cloth:")) return make_cloth(parse_count("cloth", name.substr(6), 10'000'000));
+    if (name.starts_with("bricks:")) return make_bricks(parse_count("bricks", name.substr(7), 10'000'000));
     std::string known;
     for (const BuiltinScene& scene : builtin_scenes())
         known += fmt::format("{}{}", known.empty() ? "" : ", ", scene.name);

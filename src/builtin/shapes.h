@@ -17,6 +17,10 @@ Scene make_walker();
 Scene make_blob(uint64_t triangles);
 Scene make_waves(uint64_t triangles);
 Scene make_particles(uint64_t count);
+Scene make_desk();
+Scene make_kitchen(uint64_t triangles);
+Scene make_bricks(uint64_t triangles);
+Scene make_cloth(uint64_t triangles);
 
 /// Collects a scene: one node with one mesh of one primitive per object.
 class SceneBuilder {

@@ -7,12 +7,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "loaders/triangulate.h"
 #include "scene/box.h"
 #include "scene/encoding.h"
 #include "scene/normals.h"
 #include "scene/origin.h"
 #include "scene/transform.h"
+#include "scene/triangulate.h"
 
 namespace peelray {
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "motion/swarm_motion.h"
 
 namespace peelray {
@@ -123,6 +124,19 @@ void place_water(const Scene& scene, const Water& water, Simulation::Heights& st
         moment.locals[size_t(f.node)] = float_transform(surface, f, moment.generated_time);
 }
 
+void place_cloth(const Scene& scene, const Cloth& cloth, ClothSimulation& simulation, Moment& moment) {
+    const std::vector<glm::dvec3> net = simulation.net_at(moment.generated_time);
+    const Primitive& primitive = scene.meshes[size_t(scene.nodes[size_t(cloth.node)].mesh)].primitives[0];
+    Moment::Surface moved{cloth.node, primitive.positions, primitive.normals};
+    const size_t row = cloth.across + 1;
+    parallel_for(moved.positions.size(), 1024, [&](size_t i) {
+        const ClothPoint p = cloth_point(cloth, net, double(i % row) / cloth.across, double(i / row) / cloth.along);
+        moved.positions[i] = p.position;
+        moved.normals[i] = p.normal;
+    });
+    moment.surfaces.push_back(std::move(moved));
+}
+
 }  // namespace
 
 void Simulation::place(const Scene& scene, Moment& moment) {
@@ -131,6 +145,8 @@ void Simulation::place(const Scene& scene, Moment& moment) {
     moment.surfaces.clear();
     waters_.resize(generated.waters.size());
     for (size_t i = 0; i < waters_.size(); i++) place_water(scene, generated.waters[i], waters_[i], moment);
+    for (size_t i = cloths_.size(); i < generated.cloths.size(); i++) cloths_.emplace_back(generated.cloths[i]);
+    for (size_t i = 0; i < cloths_.size(); i++) place_cloth(scene, generated.cloths[i], cloths_[i], moment);
     for (const Swarm& swarm : generated.swarms) {
         const double turns = moment.generated_time / double(swarm.period);
         for (uint32_t i = 0; i < swarm.nodes.size(); i++) {

@@ -40,11 +40,19 @@ Generators::Generators(Device& device, const Scene& scene, const Assembly& assem
         p.step = float(1.0 / water.steps_per_second);
         p.stiffness = float(std::pow(double(water.speed) / double(water.spacing()), 2));
         p.damping = water.damping;
-        p.first_vertex = assembly.waters[i].first_vertex;
-        p.body = assembly.waters[i].body;
+        p.first_vertex = assembly.surfaces[i].first_vertex;
+        p.body = assembly.surfaces[i].body;
         p.floats = uint32_t(water.floats.size());
         start(commands, state);
         waters_.push_back(std::move(state));
+    }
+    for (size_t i = 0; i < scene.generated.cloths.size(); i++) {
+        const Cloth& cloth = scene.generated.cloths[i];
+        const Assembly::Piece& piece = assembly.surfaces[waters_.size() + i];
+        ClothState state{ClothSimulation(cloth), {cloth.across, cloth.along, cloth.points, 0, piece.body}, {}};
+        state.params.first_vertex = piece.first_vertex;
+        state.net = Buffer(device, "net of cloth", cloth.start.size() * sizeof(glm::vec3));
+        cloths_.push_back(std::move(state));
     }
     for (const Swarm& swarm : scene.generated.swarms) {
         std::vector<uint32_t> instances;
@@ -71,10 +79,10 @@ void Generators::start(Commands& commands, WaterState& state) {
 }
 
 void Generators::pose(Commands& commands, const Scene& scene, double time) {
+    if (time > kLongest && !(waters_.empty() && cloths_.empty()))
+        fail("{}: {} simulated from its beginning, for at most {} seconds: choose an earlier moment than {}",
+             scene.name, waters_.empty() ? "cloth is" : "water is", kLongest, time);
     for (WaterState& state : waters_) {
-        if (time > kLongest)
-            fail("{}: water is simulated from its beginning, for at most {} seconds: choose an earlier moment than {}",
-                 scene.name, kLongest, time);
         const WaterSteps moment = steps_until(state.water, time);
         if (moment.steps < state.step) start(commands, state);
         state.wanted = moment.steps;
@@ -85,6 +93,11 @@ void Generators::pose(Commands& commands, const Scene& scene, double time) {
             floats.push_back({state.instances[i], {drift.x, drift.y}, drift.z, state.water.floats[i].radius});
         }
         if (!floats.empty()) commands.upload(state.floats, std::span<const GpuFloat>(floats));
+    }
+    for (ClothState& state : cloths_) {
+        std::vector<glm::vec3> net;
+        for (const glm::dvec3& p : state.simulation.net_at(time)) net.emplace_back(p);
+        commands.upload(state.net, std::span<const glm::vec3>(net));
     }
     for (SwarmState& state : swarms_) {
         const double turns = time / double(state.period);
@@ -134,6 +147,14 @@ void Generators::record(Commands& commands, const BodyTable& bodies, const Trian
                           {"transforms", instances.transforms()}},
                          state.params, groups_for(state.params.floats, 64));
     }
+    for (const ClothState& state : cloths_)
+        commands.run(device_.pass("cloth_surface"),
+                     {{"net", state.net},
+                      {"positions", triangles.positions},
+                      {"normals", normals},
+                      {"body_lower", bodies.lower},
+                      {"body_upper", bodies.upper}},
+                     state.params, groups_for(uint64_t(state.params.across + 1) * (state.params.along + 1), 64));
     for (const SwarmState& state : swarms_)
         commands.run(device_.pass("swarm"),
                      {{"swarm_instances", state.instances}, {"transforms", instances.transforms()}}, state.params,
@@ -145,6 +166,7 @@ uint64_t Generators::bytes() const {
     uint64_t bytes = 0;
     for (const WaterState& state : waters_)
         bytes += state.heights[0].bytes() + state.heights[1].bytes() + state.velocities.bytes() + state.floats.bytes();
+    for (const ClothState& state : cloths_) bytes += state.net.bytes();
     for (const SwarmState& state : swarms_) bytes += state.instances.bytes();
     return bytes;
 }

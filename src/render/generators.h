@@ -4,6 +4,7 @@
 #include "assembly/assembly.h"
 #include "ldc/instances.h"
 #include "ldc/triangle_buffers.h"
+#include "motion/cloth.h"
 #include "motion/motion_params.h"
 
 namespace peelray {
@@ -13,7 +14,7 @@ class Generators {
     /// Makes room for what of the scene is generated and moves in this assembly.
     Generators(Device& device, const Scene& scene, const Assembly& assembly);
 
-    bool empty() const { return waters_.empty() && swarms_.empty(); }
+    bool empty() const { return waters_.empty() && cloths_.empty() && swarms_.empty(); }
 
     /// Takes on the moment `time` of the scene, seconds. Throws Error for one that is too far from the beginning to be
     /// simulated.
@@ -38,6 +39,11 @@ class Generators {
         uint64_t step = 0, wanted = 0;
         std::vector<uint32_t> instances;  ///< of the floats
     };
+    struct ClothState {
+        ClothSimulation simulation;
+        ClothParams params{};
+        Buffer net;
+    };
     struct SwarmState {
         float period = 1;
         SwarmParams params{};
@@ -48,6 +54,7 @@ class Generators {
 
     Device& device_;
     std::vector<WaterState> waters_;
+    std::vector<ClothState> cloths_;
     std::vector<SwarmState> swarms_;
     std::vector<bool> placed_;  ///< by node
 };

@@ -1,6 +1,6 @@
-// Geometry that is not animated by keys but computed for every moment: a water surface, thousands of bodies in flight.
-// On the GPU passes of its own make it (src/render/generators), and nobody reads it back; Simulation is their twin on
-// the CPU.
+// Geometry that is not animated by keys but computed for every moment: a water surface, a sheet of cloth, thousands of
+// bodies in flight. On the GPU passes of its own make it (src/render/generators; the net of a cloth comes from the
+// host), and nobody reads it back; Simulation is their twin on the CPU.
 #pragma once
 
 #include <cstdint>
@@ -60,17 +60,32 @@ struct Swarm {
     float period = 1;        ///< seconds, after which everything repeats
 };
 
+/// A square sheet of cloth on a ball that turns, in wind, over a floor. What is simulated is a net of control points
+/// (ClothSimulation); the sheet is the uniform cubic B-spline surface over it, whose edges are the net's.
+struct Cloth {
+    int node = -1;  ///< its mesh has one primitive: (across + 1)·(along + 1) vertices, row by row along u
+    uint32_t across = 0, along = 0;  ///< cells of the mesh in u and v
+    uint32_t points = 0;             ///< of the net, in u and in v; at least 4
+    float size = 0;                  ///< of the sheet's sides, metres
+    glm::vec3 ball{0};               ///< the ball's centre, metres above the floor y = 0
+    float radius = 0;                ///< of the ball
+    std::vector<glm::vec3> start;    ///< the net at time 0, at rest, row by row along u
+
+    float spacing() const { return size / float(points - 1); }
+};
+
 /// What is generated in a scene, and which of its animations drives it.
 struct Generated {
     std::vector<Water> waters;
     std::vector<Swarm> swarms;
+    std::vector<Cloth> cloths;
     int animation = -1;
     /// Everything that is generated stays inside this box at all times.
     struct Reach {
         glm::vec3 lower{0}, upper{0};
     } reach;
 
-    bool empty() const { return waters.empty() && swarms.empty(); }
+    bool empty() const { return waters.empty() && swarms.empty() && cloths.empty(); }
 };
 
 }  // namespace peelray

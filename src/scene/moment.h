@@ -13,7 +13,8 @@ struct Moment {
     std::vector<Light> lights;                ///< Scene::lights likewise
     double generated_time = 0;                ///< of what is generated, seconds
 
-    /// Vertices of a node's only primitive that are not where the scene has them: of water.
+    /// Vertices of a node's only primitive that are not where the scene has them: of water and
+    /// of cloth.
     struct Surface {
         int node = -1;
         std::vector<glm::vec3> positions, normals;

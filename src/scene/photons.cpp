@@ -49,6 +49,7 @@ class Targets {
             generated.insert(water.node);
             for (const Water::Float& f : water.floats) generated.insert(f.node);
         }
+        for (const Cloth& cloth : scene_.generated.cloths) generated.insert(cloth.node);
         for (const Swarm& swarm : scene_.generated.swarms) generated.insert(swarm.nodes.begin(), swarm.nodes.end());
         float anywhere = 0;
         size_t object = 0;

@@ -49,7 +49,9 @@ void expect_sound(const Geometry& g, const std::string& name) {
 TEST(Builtin, AllAreSound) {
     for (const char* name :
          {"builtin:teapots", "builtin:glass", "builtin:tree", "builtin:leaves", "builtin:room", "builtin:walker",
-          "builtin:blob:5000", "builtin:waves", "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
+          "builtin:desk", "builtin:kitchen", "builtin:kitchen:8", "builtin:kitchen:3000", "builtin:bricks",
+          "builtin:bricks:8", "builtin:bricks:3000", "builtin:cloth:2000", "builtin:blob:5000", "builtin:waves",
+          "builtin:waves:20", "builtin:particles", "builtin:particles:8"}) {
         const Scene scene = load_scene(name);
         EXPECT_TRUE(scene.name.starts_with(name)) << scene.name << " for " << name;
         EXPECT_EQ(scene.cameras.size(), 1u);
@@ -58,7 +60,7 @@ TEST(Builtin, AllAreSound) {
 }
 
 TEST(Builtin, ListNamesWhatCanBeMade) {
-    ASSERT_EQ(builtin_scenes().size(), 9u);
+    ASSERT_EQ(builtin_scenes().size(), 13u);
     for (const BuiltinScene& scene : builtin_scenes()) {
         EXPECT_FALSE(scene.description.empty());
         if (scene.name == "blob:N") continue;
@@ -173,6 +175,67 @@ TEST(Builtin, BlobMeetsItsNumber) {
     }
 }
 
+TEST(Builtin, KitchenAndBricksMeetTheirNumbers) {
+    for (const char* name : {"kitchen", "bricks"})
+        for (const size_t n : {8u, 9u, 20u, 200u, 1000u, 5001u, 60000u, 200000u}) {
+            const Scene scene = make_builtin(fmt::format("{}:{}", name, n));
+            const Geometry geometry = flatten(scene);
+            EXPECT_NEAR(double(geometry.triangles.size() - 2), double(n), 12 + 0.005 * double(n)) << name << " " << n;
+            EXPECT_GE(geometry.lower.y, 0) << name;
+            EXPECT_EQ(scene.notes.size(), 1u);
+            EXPECT_EQ(flatten(make_builtin(fmt::format("{}:{}", name, n))).positions, geometry.positions);
+        }
+}
+
+/// All that is one body as a whole: what is looked at and the room around it are not.
+TEST(Builtin, ThingsAreClosed) {
+    for (const char* name : {"kitchen:20000", "bricks:40000", "desk"}) {
+        const Scene scene = make_builtin(name);
+        size_t bodies = 0;
+        for (const Node& node : scene.nodes) {
+            const Primitive& p = scene.meshes[size_t(node.mesh)].primitives.at(0);
+            if (p.triangles.size() <= 2) continue;
+            expect_closed_outwards(p, std::string(name) + ": " + node.name);
+            bodies++;
+        }
+        EXPECT_GT(bodies, 20u) << name;
+    }
+}
+
+TEST(Builtin, BricksAreCutIntoSliversAsCadDoes) {
+    const Geometry g = flatten(make_builtin("bricks:100000"));
+    size_t slivers = 0;
+    for (const glm::uvec3& t : g.triangles) {
+        const glm::vec3 a = g.positions[t.x], b = g.positions[t.y], c = g.positions[t.z];
+        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        slivers += glm::length(glm::cross(b - a, c - a)) < 0.1f * longest * longest;
+    }
+    EXPECT_GT(slivers, g.triangles.size() / 6);
+}
+
+TEST(Builtin, DeskIsAThousandToOne) {
+    const Scene scene = make_builtin("desk");
+    const Geometry geometry = flatten(scene);
+    EXPECT_GT(geometry.triangles.size(), 50000u);
+    EXPECT_LT(geometry.triangles.size(), 150000u);
+    const glm::vec3 size = geometry.upper - geometry.lower;
+    // The watch's jewels are a millimetre wide.
+    std::vector<float> jewels;
+    for (const Node& node : scene.nodes) {
+        if (node.name != "watch: jewels") continue;
+        const Primitive& p = scene.meshes[size_t(node.mesh)].primitives.at(0);
+        for (const glm::uvec3& t : p.triangles)
+            jewels.push_back(0.001f * glm::distance(p.positions[t.x], p.positions[t.y]));
+    }
+    ASSERT_FALSE(jewels.empty());
+    EXPECT_GT(size.x / *std::max_element(jewels.begin(), jewels.end()), 1000);
+    // The camera is in the room, before the watch.
+    const glm::dvec3 eye = scene.cameras.at(0).eye;
+    EXPECT_LT(glm::length(eye), 0.2);
+    EXPECT_TRUE(glm::all(glm::greaterThan(glm::vec3(eye), geometry.lower)) &&
+                glm::all(glm::lessThan(glm::vec3(eye), geometry.upper)));
+}
+
 TEST(Builtin, BlobHasNoSlivers) {
     const Scene scene = make_builtin("blob:20000");
     const Primitive& p = scene.meshes.at(0).primitives.at(0);
@@ -281,10 +344,13 @@ TEST(Builtin, SmallBlobsSwell) {
 TEST(Builtin, Bad) {
     for (const char* name :
          {"builtin:", "builtin:nothing", "builtin:blob", "builtin:blob:", "builtin:blob:7", "builtin:blob:10000001",
-          "builtin:blob:-8", "builtin:blob:1e6", "builtin:blob:99999999999999999999", "builtin:blob:12 "})
+          "builtin:blob:-8", "builtin:blob:1e6", "builtin:blob:99999999999999999999", "builtin:blob:12 ",
+          "builtin:kitchen:", "builtin:kitchen:7", "builtin:kitchen:10000001", "builtin:bricks:7", "builtin:bricks:x",
+          "builtin:cloth:7", "builtin:cloth:10000001", "builtin:desk:8"})
         error_of(name);
-    EXPECT_MENTIONS(error_of("builtin:nothing"),
-                    "teapots, glass, tree, leaves, room, walker, blob:N, waves, particles");
+    EXPECT_MENTIONS(
+        error_of("builtin:nothing"),
+        "teapots, glass, tree, leaves, room, walker, desk, kitchen, bricks, cloth, blob:N, waves, particles");
 }
 
 }  // namespace

@@ -217,6 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(LongStill, Agreement,
                          testing::Values(SceneCase{"teapots", {"builtin:teapots", "--ldc", "1024"}},
                                          SceneCase{"tree", {"builtin:tree", "--ldc", "1024"}},
+                                         SceneCase{"bricks", {"builtin:bricks:50000", "--ldc", "1024"}},
                                          SceneCase{"leaves_samples",
                                                    {"builtin:leaves", "--ldc", "1024", "--spp", "2", "--effects",
                                                     "reflection,refraction,shadow,ambient"}},
@@ -268,6 +269,7 @@ std::vector<SceneCase> moving(size_t which) {
     add(1, "waves", {"0", "2.5"}, {"builtin:waves"});
     // One bounce: small round mirrors facing each other magnify a rounding a hundredfold each time (docs/accuracy.md).
     add(1, "particles", {"0", "1.6"}, {"builtin:particles", "--bounces", "1"});
+    add(1, "cloth", {"0.9", "4"}, {"builtin:cloth"});
     add(1, "swell", {"0.7"}, {"builtin:blob:8000"});
     return cases[which];
 }

@@ -31,8 +31,9 @@ TEST_F(BadInput, FilesThatHoldNoMesh) {
     expect_bad_scene("folder.glb", "not a regular file");
     put("picture.jpg", "x");
     expect_bad_scene("picture.jpg", "the extension \".jpg\" is unknown");
-    expect_refused(run({"info", "builtin:moon"}), 1,
-                   "known are teapots, glass, tree, leaves, room, walker, blob:N, waves, particles");
+    expect_refused(
+        run({"info", "builtin:moon"}), 1,
+        "known are teapots, glass, tree, leaves, room, walker, desk, kitchen, bricks, cloth, blob:N, waves, particles");
     expect_refused(run({"info", "builtin:blob:7"}), 1, "8 to 10000000");
     expect_refused(run({"info", "builtin:blob:10000001"}), 1, "8 to 10000000");
     expect_refused(run({"info", ""}), 1, "");

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "loaders/scene_files.h"
-#include "loaders/triangulate.h"
 #include "scene/normals.h"
+#include "scene/triangulate.h"
 
 namespace peelray::testing {
 namespace {

@@ -38,7 +38,7 @@ TEST(Simulation, WhatSwimsGoesWithTheWater) {
 }
 
 TEST(Simulation, TheBeginningIsTheSceneAtRest) {
-    for (const char* name : {"builtin:waves:200", "builtin:particles:50"}) {
+    for (const char* name : {"builtin:waves:200", "builtin:particles:50", "builtin:cloth:50"}) {
         const Scene scene = load_scene(name);
         Simulation simulation;
         EXPECT_EQ(flatten(scene, placed_at(scene, simulation, 0)).positions, flatten(scene).positions) << name;

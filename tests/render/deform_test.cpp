@@ -196,7 +196,7 @@ TEST_F(DeformTest, WaterIsThatOfTheCpu) {
     for (const uint32_t triangles : {200u, 5000u}) {
         Scene scene = load_scene(fmt::format("builtin:waves:{}", triangles));
         MovedScene moved(device(), scene, "0");
-        EXPECT_EQ(moved.assembly.waters.size(), 1u);
+        EXPECT_EQ(moved.assembly.surfaces.size(), 1u);
         double highest = 0;
         for (const double time : {0.0, 1 / 120.0, 0.4, 2.123, 5.0, 0.4}) {
             SCOPED_TRACE(time);
@@ -208,6 +208,21 @@ TEST_F(DeformTest, WaterIsThatOfTheCpu) {
         }
         EXPECT_GT(highest, 0.02) << "there are waves";
         EXPECT_LT(highest, 0.25) << "and they do not grow";
+    }
+}
+
+TEST_F(DeformTest, ClothIsThatOfTheCpu) {
+    for (const uint32_t triangles : {8u, 5000u}) {
+        Scene scene = load_scene(fmt::format("builtin:cloth:{}", triangles));
+        MovedScene moved(device(), scene, "0");
+        EXPECT_EQ(moved.assembly.surfaces.size(), 1u);
+        for (const double time : {0.0, 0.3, 1.237, 0.3}) {
+            SCOPED_TRACE(time);
+            moved.pose(time);
+            const auto worst = moved.compare();
+            EXPECT_LT(worst.position, 1e-6);
+            EXPECT_LT(worst.normal, 1e-4);
+        }
     }
 }
 

@@ -36,7 +36,8 @@ TEST(PosedScene, StandsAtRestUnlessAMomentIsAskedFor) {
 }
 
 TEST(PosedScene, AMomentIsTheSameWhereverItComesFrom) {
-    for (const char* name : {"builtin:walker", "builtin:blob:500", "builtin:waves:200", "builtin:particles:50"}) {
+    for (const char* name :
+         {"builtin:walker", "builtin:blob:500", "builtin:waves:200", "builtin:particles:50", "builtin:cloth:50"}) {
         SCOPED_TRACE(name);
         PictureArguments settings = settings_of_scene(name);
         settings.time = 0.8;

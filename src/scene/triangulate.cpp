@@ -1,4 +1,4 @@
-#include "loaders/triangulate.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
