@@ -13,5 +13,7 @@ void run_trace(const TraceArguments& arguments);
 void run_bench(const BenchArguments& arguments);
 void run_info(const std::string& scene);
 void run_devices();
+/// Returns the exit status: 0 where a Vulkan device passed its checked frame, else 1.
+int run_doctor(bool json);
 
 }  // namespace peelray

@@ -49,7 +49,7 @@ std::string describe(const CLI::ParseError& error, const CLI::App& program, cons
                                      [](const std::string& text) { return text.size() > 1 && text[0] == '-'; });
     if (option != rest.end()) return fmt::format("unknown option '{}'", *option);
     if (chosen.empty()) {
-        const char* commands = "render, compare, trace, bench, info or devices";
+        const char* commands = "render, compare, trace, bench, info, devices or doctor";
         return rest.empty() ? fmt::format("name a command: {}", commands)
                             : fmt::format("unknown command '{}': there are {}", rest.front(), commands);
     }
@@ -64,6 +64,8 @@ struct Arguments {
     TraceArguments trace;
     BenchArguments bench;
     std::string info_scene;
+    bool doctor_json = false;
+    int status = 0;  ///< of the command, where it ends without an Error
 };
 
 struct Command {
@@ -87,6 +89,12 @@ std::vector<Command> add_commands(CLI::App& program, Arguments& a) {
     info->add_option("SCENE", a.info_scene, kSceneHelp)->required()->type_name("");
     info->footer(builtin_list());
     CLI::App* devices = program.add_subcommand("devices", "List the Vulkan devices (for --device)")->footer("");
+    CLI::App* doctor =
+        program.add_subcommand("doctor", "Say what this machine has and lacks, and draw a checked picture");
+    doctor->add_flag("--json", a.doctor_json, "as JSON: for programs");
+    doctor->footer(
+        "One line per cause, with its remedy. A small picture is drawn on every device, and compared with the one of\n"
+        "--tracer reference. Exit status 0: a Vulkan device passed; 1: only the CPU tracer works, or nothing.");
     CLI::App* view = program.add_subcommand("view", "Look around interactively (not built into this version)");
     view->allow_extras()->footer("");
     return {{render,
@@ -105,10 +113,11 @@ std::vector<Command> add_commands(CLI::App& program, Arguments& a) {
             {bench, [&a] { run_within_limits(a.bench, run_bench); }},
             {info, [&a] { run_info(a.info_scene); }},
             {devices, run_devices},
+            {doctor, [&a] { a.status = run_doctor(a.doctor_json); }},
             {view, [] {
                  fail(
-                     "'view' is not built into this version: there are render, compare, trace, bench, info and "
-                     "devices");
+                     "'view' is not built into this version: there are render, compare, trace, bench, info, "
+                     "devices and doctor");
              }}};
 }
 
@@ -158,7 +167,7 @@ int run_program(int argc, const char* const* argv) {
         fmt::print(stderr, "peelray: internal error: {}: please report it\n", one_line(error.what()));
         return 1;
     }
-    return 0;
+    return arguments.status;
 }
 
 }  // namespace peelray

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/search_path.h"
 #include "base/text.h"
 
 extern char** environ;
@@ -67,14 +68,7 @@ bool is_video(const fs::path& path) {
 
 fs::path find_ffmpeg() {
     const char* path = std::getenv("PATH");
-    std::string_view rest = path ? path : "";
-    while (!rest.empty()) {
-        const size_t colon = rest.find(':');
-        const fs::path program = fs::path(rest.substr(0, colon)) / "ffmpeg";
-        std::error_code error;
-        if (fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0) return program;
-        rest = colon == std::string_view::npos ? std::string_view() : rest.substr(colon + 1);
-    }
+    if (const auto program = find_program(path ? path : "", "ffmpeg")) return *program;
     fail(
         "there is no ffmpeg on the PATH, which encodes videos: install it (apt-get install ffmpeg), or write pictures "
         "with -o NAME_%05d.png");

@@ -43,6 +43,8 @@ struct DeviceOptions {
     uint64_t most_bound = 0, most_held = 0;
 };
 
+/// Is Vulkan's library installed? It is loaded when it is first asked for.
+bool has_vulkan_loader();
 /// All devices of the installed drivers, best first. Throws Error if there is no Vulkan loader or no driver.
 std::vector<DeviceInfo> list_devices();
 /// The one that DeviceOptions::select names. Throws Error as making it does.

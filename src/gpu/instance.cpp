@@ -15,10 +15,7 @@ const char* const kNoDriver =
     "no Vulkan driver found: install one (Debian/Ubuntu: the package mesa-vulkan-drivers runs on any CPU)";
 
 void load_vulkan() {
-    static std::once_flag once;
-    static VkResult result = VK_ERROR_INITIALIZATION_FAILED;
-    std::call_once(once, [] { result = volkInitialize(); });
-    if (result != VK_SUCCESS)
+    if (!has_vulkan_loader())
         fail("no Vulkan loader found: install one (Debian/Ubuntu: packages libvulkan1 and mesa-vulkan-drivers)");
 }
 
@@ -100,6 +97,13 @@ PhysicalDevice describe(VkPhysicalDevice device) {
 }
 
 }  // namespace
+
+bool has_vulkan_loader() {
+    static std::once_flag once;
+    static VkResult result = VK_ERROR_INITIALIZATION_FAILED;
+    std::call_once(once, [] { result = volkInitialize(); });
+    return result == VK_SUCCESS;
+}
 
 VkInstance create_instance(bool validate, const VkDebugUtilsMessengerCreateInfoEXT* messenger, bool& debug_utils) {
     load_vulkan();

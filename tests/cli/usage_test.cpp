@@ -24,7 +24,7 @@ class Usage : public ProgramTest {
 };
 
 TEST_F(Usage, CommandMissingOrUnknown) {
-    expect_refused(run({}), 2, "name a command: render, compare, trace, bench, info or devices");
+    expect_refused(run({}), 2, "name a command: render, compare, trace, bench, info, devices or doctor");
     expect_refused(run({"rendr", "x"}), 2, "unknown command 'rendr'");
     expect_refused(run({"--colour"}), 2, "unknown option '--colour'");
 }
@@ -250,7 +250,7 @@ TEST_F(Usage, HelpMentionsEveryOption) {
     const Words tracing = {"--builder", "--hit", "--tolerance", "--traversal", "--block",    "--routing", "--depth",
                            "--batch",   "--ldc", "--tracer",    "--device",    "--validate", "--stats"};
     std::vector<std::pair<Words, Words>> pages = {
-        {{"--help"}, {"render", "trace", "info", "devices", "compare", "bench", "view", "--version"}},
+        {{"--help"}, {"render", "trace", "info", "devices", "doctor", "compare", "bench", "view", "--version"}},
         {{"render", "--help"},
          {"SCENE",           "-o,",           "--size",          "--eye",           "--look",         "--up",
           "--fov",           "--camera",      "--env",           "--sky",           "--background",   "--exposure",
@@ -262,6 +262,7 @@ TEST_F(Usage, HelpMentionsEveryOption) {
         {{"trace", "--help"}, {"SCENE", "--rays", "--out", "--any-hit", "--repeat", "--counters"}},
         {{"info", "--help"}, {"SCENE"}},
         {{"devices", "--help"}, {}},
+        {{"doctor", "--help"}, {"--json"}},
         {{"compare", "--help"},
          {"SCENE", "-o,", "--tracers", "--hit", "--picture", "--json", "--strip", "--worst", "--size", "--env"}},
         {{"bench", "--help"},
