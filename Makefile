@@ -4,13 +4,14 @@ JOBS ?= $(shell nproc)
 PROGRAM := build/release/peelray
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 
-.PHONY: help demo build test test-long clean format check-format packages test-packages
+.PHONY: help demo build test test-long separate clean format check-format packages test-packages
 .DEFAULT_GOAL := help
 
 help:
 	@echo 'make demo    install what is missing, build, render a built-in scene to out/demo.png'
 	@echo 'make test    install what is missing, build, run the tests'
-	@echo 'make test-long    what takes too long for that: every ray and scene, the sanitizers, every source file by itself'
+	@echo 'make test-long    what takes too long for that: every ray and scene, the sanitizers'
+	@echo 'make separate     compile every source file by itself: each must include what it uses'
 	@echo 'make build   install what is missing, build $(PROGRAM)'
 	@echo 'make clean   remove build/ and out/'
 	@echo 'make format  apply clang-format (check-format: only look)'
@@ -37,7 +38,8 @@ test-long: test-packages
 	@cmake --preset sanitize --log-level=NOTICE -DPEELRAY_TESTS=ON
 	@cmake --build --preset sanitize --parallel $(JOBS) --target tests
 	$(CTEST) --test-dir build/sanitize -L cpu
-	@echo '== every source file of the program by itself: each must include what it uses'
+
+separate: packages
 	@cmake --preset separate --log-level=NOTICE -DPEELRAY_TESTS=OFF
 	@cmake --build --preset separate --parallel $(JOBS)
 

@@ -73,6 +73,7 @@ struct PeelrayOptions {
     uint batch;       ///< by pixel: PEELRAY_ONE, ...; a constant
     uint instances;   ///< a constant: how many there are, 1 to 8; 0: any number
     uint bare;        ///< a constant: of 1 to 8 instances the first so many boxes are those of bare bodies
+    bool refined;     ///< a constant: by voxel and `exact`: voxels may be refined
 };
 
 /// Where a line enters and leaves the box [0, size].

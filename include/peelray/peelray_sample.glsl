@@ -10,8 +10,17 @@ const float PEELRAY_PLANE_SLACK = 5e-4;
 /// half floats (2.4e-4; 7.4e-4 where one is about -1).
 const float PEELRAY_SEGMENT_SLACK = 3e-3;
 /// A plane's values at both ends of a ray's way through a voxel, off by PEELRAY_SEGMENT_SLACK at most, must differ by this for the place
-/// in between where it is hit to be known to 0.03 pixels, by which the coverage is wider than the triangle.
+/// in between where it is hit to be known to PEELRAY_MARGIN pixels, by which the coverage is wider than the triangle.
 const float PEELRAY_UNCERTAIN_PLACE = 0.1;
+const float PEELRAY_MARGIN = 0.03;
+/// The same in the finer voxels of a refined one, which are a fourth of it: rounding stays what it was, so that a place is known to twice
+/// the share of a pixel from half the difference on (the margin in finer pixels).
+const float PEELRAY_FINE_UNCERTAIN_PLACE = 0.5 * PEELRAY_UNCERTAIN_PLACE;
+const float PEELRAY_FINE_MARGIN = 2.0 * PEELRAY_MARGIN;
+
+/// Of a voxel's entry: it holds samples; it is refined, and the other bits are the number of its block of finer ones instead of its first
+/// sample.
+const uint PEELRAY_OCCUPIED = 0x80000000u, PEELRAY_REFINED = 0xc0000000u, PEELRAY_FIRST = 0x3fffffffu;
 /// Slopes are stored in [-this, this]: beyond 1 only in the overlap band of `planar` (1 / LDC_OVERLAP).
 const float PEELRAY_SLOPE_RANGE = 1.25;
 /// Half-width of a sample's footprint for `planar` hits, in pixels.

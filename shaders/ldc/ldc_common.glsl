@@ -232,10 +232,10 @@ uvec2 ldcPackSample(LdcTriangle t, uvec3 voxel, uint axis, uint sampling, bool l
     return uvec2(normal.x | normal.y << 16u, normal.z | w_bits << 16u | end);
 }
 
-/// The cells of a pixel's 4x4 grid where a triangle is, a bit each. Conservative: a cell counts when the triangle comes within 0.03
+/// The cells of a pixel's 4x4 grid where a triangle is, a bit each. Conservative: a cell counts when the triangle comes within `margin`
 /// pixels of it; the traversal asks for the cell only where it knows the place so well (PEELRAY_UNCERTAIN_PLACE).
-uint ldcCoverage(LdcTriangle t, vec2 corner) {
-    const float half_cell = 0.125 + 0.03;
+uint ldcCoverage(LdcTriangle t, vec2 corner, float margin) {
+    const float half_cell = 0.125 + margin;
     const vec3 reach = ldcReach(t) * half_cell;
     const vec2 low = min(t.a.xy, min(t.b.xy, t.c.xy)) - half_cell, high = max(t.a.xy, max(t.b.xy, t.c.xy)) + half_cell;
     const vec2 first = corner + 0.125;
@@ -257,12 +257,13 @@ uint ldcCoverage(LdcTriangle t, vec2 corner) {
     return coverage;
 }
 
-/// The same of `exact` hits (peelrayMayHit). `id`: of the triangle, and the LDI's axis.
-uvec4 ldcPackPatch(LdcTriangle t, uvec3 voxel, uint id, bool last) {
+/// The same of `exact` hits (peelrayMayHit). `id`: of the triangle, and the LDI's axis; `size`: of what counts as a voxel here, in voxels;
+/// `margin`: of the coverage (PEELRAY_MARGIN).
+uvec4 ldcPackPatch(LdcTriangle t, uvec3 voxel, uint id, float size, float margin, bool last) {
     const vec3 corner = peelrayToLdi(vec3(voxel), id & 3u);
-    const float w = ldcDepthIn(t, corner) - 0.5;
+    const float w = (ldcDepthIn(t, corner) - 0.5) * size;
     const uvec3 normal = ldcHalfNormal(t.slope, id & 3u);
-    return uvec4(normal.x | normal.y << 16u, normal.z | ldcCoverage(t, corner.xy) << 16u, (floatBitsToUint(w) & ~1u) | (last ? 1u : 0u), id);
+    return uvec4(normal.x | normal.y << 16u, normal.z | ldcCoverage(t, corner.xy, margin) << 16u, (floatBitsToUint(w) & ~1u) | (last ? 1u : 0u), id);
 }
 
 #endif

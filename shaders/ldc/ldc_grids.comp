@@ -10,6 +10,7 @@ BUFFER(readonly, 0, uvec3, body_lower)
 BUFFER(readonly, 1, uvec3, body_upper)
 BUFFER(, 2, LdcBody, bodies)
 BUFFER(, 3, LdcCounters, counters)
+BUFFER(writeonly, 4, LdcExtent, extent)
 
 shared uvec4 partial[64];
 
@@ -48,8 +49,8 @@ void main() {
         barrier();
     }
     if (lane == 0u) {
-        counters[0].lines = carry.xyz;
         // One more offset ends the last pixel's list; whole tiles of tiles, so that what follows lies as this does.
         counters[0].cells = carry.w + (params.by_pixel != 0u ? 256u : 0u);
+        extent[0] = LdcExtent(carry.xyz, carry.w);
     }
 }

@@ -53,8 +53,12 @@ struct LdcParams {
     uint level;           ///< of ldc_ranges_up; of ldc_peel: passes before this one
     uint viewport;        ///< of the graphics pipeline: pixels along a side of what clip space covers, a power of two
     uint side;            ///< of peeling: pixels along a side of the targets
+    uint refine_above;     ///< lists longer than this are refined; ~0: none
+    uint refine_from;      ///< but only if the longest list of all is longer than this
+    uint refine_capacity;  ///< lists to be refined that have room
+    uint fine_capacity;    ///< samples of finer voxels that have room
 };
-SHARED_SIZE(LdcParams, 84);
+SHARED_SIZE(LdcParams, 100);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
 #define LDC_BAND 1u          // pixel centres, with the overlap band: `planar`
 #define LDC_CENTRE 2u        // pixel centres, each triangle in one LDI, as in the paper: `tolerance`
@@ -74,11 +78,31 @@ struct LdcCounters {
     uint invalid;     ///< triangles with NaN or infinite corners: dropped
     uint wrapped;     ///< bit 0: more fragments than 32 bits count; 1: cells or pixels; 2: a tolerance beyond what
                       ///< by-voxel samples hold
-    uvec3 lines;      ///< of ldc_sat_scan along x, y, z
     uint complexity;  ///< of peeling: the depth complexity, largest of all bodies
     uint passes;      ///< of peeling: made for all bodies
+    uint refine;      ///< lists that are to be refined, if any are
+    uint longest_left;  ///< samples of the longest of the other lists
 };
-SHARED_SIZE(LdcCounters, 68);
+SHARED_SIZE(LdcCounters, 64);
+
+/// How large the grids of a build are: of its counters what is known before its first triangle, apart from them so that passes which need no
+/// more can go on beside those that count.
+struct LdcExtent {
+    uvec3 lines;  ///< of ldc_sat_scan along x, y, z
+    uint cells;   ///< 16x16x16 cells
+};
+SHARED_SIZE(LdcExtent, 16);
+
+/// Longer lists are not refined: one workgroup would take too long for them.
+#define LDC_LONGEST_REFINED 2048u
+
+/// What refining has counted. Apart from the counters, so that it can go on beside passes that read those.
+struct LdcRefined {
+    uint voxels;   ///< that became 4x4x4 finer ones: of the lists that are to be refined those that were worth it
+    uint samples;  ///< of finer voxels
+    uint longest;  ///< list among those that were to be refined, afterwards
+};
+SHARED_SIZE(LdcRefined, 12);
 
 /// Bits of LdcCounters::wrapped.
 #define LDC_WRAPPED_FRAGMENTS 1u

@@ -1,64 +1,7 @@
-// Rasterises small triangles, one thread each, into the LDIs that capture them; cuts the large ones into blocks of pixels.
+// Rasterises triangles into the LDIs that capture them, the pixels of a small one by its own thread.
 #version 460
-#include "common/common.glsl"
-#include "ldc/ldc_params.h"
-layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
-layout(constant_id = 1) const uint small_pixels = 48u;  // of a triangle's bounds that a thread goes through by itself
-layout(constant_id = 2) const bool keeps_corners = false;  // for `exact` hits
-PARAMS(LdcParams)
-BUFFER(readonly, 0, vec3, positions)
-BUFFER(readonly, 1, uvec3, triangles)
-BUFFER(, 2, LdcCounters, counters)
-BUFFER(, 3, uint, node_masks)
-BUFFER(writeonly, 4, LdcFragment, fragments)
-BUFFER(writeonly, 5, uvec2, blocks)
-BUFFER(readonly, 6, LdcBody, bodies)
-BUFFER_ALIGNED(writeonly, 16, LdcCorners, corners)
-#define BASE_COLOR_FIRST_BINDING 7
-#include "common/base_color_buffers.glsl"
-#include "common/bounds.glsl"
-#include "ldc/ldc_alpha.glsl"
-#include "ldc/ldc_corners.glsl"
-#include "ldc/ldc_emit.glsl"
-#include "ldc/ldc_projected.glsl"
-
-// Triangles that touch many blocks are cut by all threads of the workgroup.
-const uint LDC_MANY_BLOCKS = 16u;
-shared uint group_valid;  // has the workgroup anything to rasterise?
-shared uint many_count;
-shared uint many[3u * gl_WorkGroupSize.x];  // of a triangle in up to three LDIs
-
-/// Queues the blocks of pixels that a large triangle touches: of those in its bounds number `first`, `first` + `step`, ...
-void queueBlocks(LdcTriangle t, ivec2 lo, ivec2 hi, uint id, uint first, uint step) {
-    const uvec2 corner = uvec2(lo) / LDC_BLOCK, size = uvec2(hi) / LDC_BLOCK - corner + 1u;
-    const vec3 reach = ldcReach(t);
-    // Half a block and a pixel: never tighter than the test of the pixels themselves.
-    const float half_block = float(LDC_BLOCK) * 0.5;
-    for (uint i = first; i < size.x * size.y; i += step) {
-        const uvec2 block = corner + uvec2(i % size.x, i / size.x);
-        if (any(lessThan(ldcEdges(t, vec2(block) * float(LDC_BLOCK) + half_block), -(half_block + 0.51) * reach))) continue;
-        const uint slot = atomicAdd(counters[0].blocks, 1u);
-        if (slot < params.block_capacity) blocks[slot] = uvec2(id, block.x | block.y << 16u);
-    }
-}
-
-bool touchesMany(ivec2 lo, ivec2 hi) {
-    const uvec2 size = uvec2(hi) / LDC_BLOCK - uvec2(lo) / LDC_BLOCK + 1u;
-    return size.x * size.y > LDC_MANY_BLOCKS;
-}
-
-/// Is this a triangle that is not degenerate and whose bounds contain no pixel's centre in any LDI? Most of a fine mesh
-/// are: they need not be projected.
-bool missesCentres(CubeGrid grid, vec3 a, vec3 b, vec3 c) {
-    const vec3 lower = (min(a, min(b, c)) - grid.origin) * grid.inv_voxel - (0.5 + 2.0 * LDC_SLACK);
-    const vec3 upper = (max(a, max(b, c)) - grid.origin) * grid.inv_voxel - (0.5 - 2.0 * LDC_SLACK);
-    const bvec3 holds = greaterThanEqual(floor(upper), ceil(lower));
-    if ((holds.x && holds.y) || (holds.y && holds.z) || (holds.z && holds.x)) return false;
-    const vec3 e = b - a, f = c - a, normal = abs(cross(e, f)), sizes = abs(e), other = abs(f);
-    return max(normal.x, max(normal.y, normal.z)) >
-           1e-5 * max(sizes.x, max(sizes.y, sizes.z)) * max(other.x, max(other.y, other.z));
-}
+#define RASTER_THREADS 64
+#include "ldc/ldc_raster.glsl"
 
 /// Fragments of a small triangle: counted if `write` is false, else written from `position` on.
 uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace place, bool write, uint position) {
@@ -70,51 +13,20 @@ uint emitSmall(LdcTriangle t, vec3 reach, ivec2 lo, ivec2 hi, uint id, LdcPlace 
     return count;
 }
 
-/// A triangle as its thread goes through it, in all LDIs that capture it.
-struct RasterTriangle {
-    uint id;
-    vec3 a, b, c, normal;
-    uint first_axis, last_axis;  ///< only the overlap band has triangles that several LDIs capture
+/// The LDIs that may capture a triangle: only the overlap band has triangles that several of them do.
+struct Axes {
+    uint first, last;
 };
 
-/// False: there is nothing to rasterise.
-bool readTriangle(CubeGrid grid, inout RasterTriangle triangle) {
-    const uvec3 indices = triangles[triangle.id];
-    triangle.a = positions[indices.x];
-    triangle.b = positions[indices.y];
-    triangle.c = positions[indices.z];
-    if (!(isBounded(triangle.a) && isBounded(triangle.b) && isBounded(triangle.c))) {
-        atomicAdd(counters[0].invalid, 1u);
-        return false;
-    }
-    if (params.sampling != LDC_CONSERVATIVE && missesCentres(grid, triangle.a, triangle.b, triangle.c)) return false;
-    triangle.normal = ldcNormal(triangle.a, triangle.b, triangle.c, grid.inv_voxel);
-    if (keeps_corners) corners[triangle.id] = ldcPackCorners(grid, triangle.a, triangle.b, triangle.c, triangle.normal);
-    if (triangle.normal == vec3(0)) {
-        atomicAdd(counters[0].degenerate, 1u);
-        return false;
-    }
-    return true;
-}
-
-/// Fragments of a triangle where it is small; where it is large its blocks are queued, or left to the workgroup. `covering`:
-/// the LDIs, a bit each, in which there are fragments.
-uint countSmall(RasterTriangle triangle, LdcPlace place, out uint covering) {
+/// Fragments of a triangle where it is small. `covering`: the LDIs, a bit each, in which there are fragments.
+uint countSmall(RasterTriangle triangle, Axes axes, LdcPlace place, out uint covering) {
     uint count = covering = 0u;
-    for (uint axis = triangle.first_axis; axis <= triangle.last_axis; axis++) {
+    for (uint axis = axes.first; axis <= axes.last; axis++) {
         if (!ldcCaptured(triangle.normal, axis, params.sampling)) continue;
         const uint id = triangle.id << 2u | axis;
         const LdcTriangle t = ldcProject(place.grid, triangle.a, triangle.b, triangle.c, triangle.normal, axis);
         ivec2 lo, hi;
-        if (!ldcBounds(t, uvec3(peelrayToLdi(vec3(place.grid.dims), axis)).xy, lo, hi)) continue;
-        const ivec2 size = hi - lo + 1;
-        if (uint(size.x) * uint(size.y) > small_pixels) {
-            if (touchesMany(lo, hi))
-                many[atomicAdd(many_count, 1u)] = id;
-            else
-                queueBlocks(t, lo, hi, id, 0u, 1u);
-            continue;
-        }
+        if (!isSmall(t, id, place.grid, lo, hi)) continue;
         const uint emitted = emitSmall(t, ldcReach(t), lo, hi, id, place, false, 0u);
         if (emitted != 0u) covering |= 1u << axis;
         count += emitted;
@@ -122,8 +34,8 @@ uint countSmall(RasterTriangle triangle, LdcPlace place, out uint covering) {
     return count;
 }
 
-void writeSmall(RasterTriangle triangle, LdcPlace place, uint covering, uint position) {
-    for (uint axis = triangle.first_axis; axis <= triangle.last_axis; axis++) {
+void writeSmall(RasterTriangle triangle, Axes axes, LdcPlace place, uint covering, uint position) {
+    for (uint axis = axes.first; axis <= axes.last; axis++) {
         if ((covering >> axis & 1u) == 0u) continue;
         const LdcTriangle t = ldcProject(place.grid, triangle.a, triangle.b, triangle.c, triangle.normal, axis);
         ivec2 lo, hi;
@@ -132,37 +44,17 @@ void writeSmall(RasterTriangle triangle, LdcPlace place, uint covering, uint pos
     }
 }
 
-/// By all threads of the workgroup.
-void cutMany() {
-    for (uint i = 0u; i < many_count; i++) {
-        const uint large = many[i];
-        const CubeGrid grid = bodies[ldcBodyOfTriangle(large >> 2u)].grid;
-        const LdcTriangle t = ldcProjected(grid, large);
-        ivec2 lo, hi;
-        ldcBounds(t, uvec3(peelrayToLdi(vec3(grid.dims), large & 3u)).xy, lo, hi);
-        queueBlocks(t, lo, hi, large, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
-    }
-}
-
 void main() {
     RasterTriangle triangle;
-    triangle.id = params.first_triangle + GLOBAL_INDEX;
-    triangle.normal = vec3(0);
-    bool valid = GLOBAL_INDEX < params.triangles && LDC_CELLS_FIT(counters[0]);
-    const uint body = valid ? ldcBodyOfTriangle(triangle.id) : params.first_body;
-    const LdcPlace place = ldcPlaceOf(body);
-    if (valid) valid = readTriangle(place.grid, triangle);
-    if ((bodies[body].resolution & LDC_BARE) != 0u) valid = false;
-    if (gl_LocalInvocationIndex == 0u) many_count = group_valid = 0u;
-    barrier();
-    if (valid) group_valid = 1u;
-    barrier();
-    if (group_valid == 0u) return;
-    triangle.first_axis = params.sampling == LDC_BAND ? 0u : ldcAxis(triangle.normal);
-    triangle.last_axis = params.sampling == LDC_BAND ? 2u : triangle.first_axis;
+    bool any;
+    const bool valid = readTriangles(triangle, any);
+    if (!any) return;
+    const LdcPlace place = ldcPlaceOf(triangle.body);
+    const uint axis = ldcAxis(triangle.normal);
+    const Axes axes = params.sampling == LDC_BAND ? Axes(0u, 2u) : Axes(axis, axis);
     uint covering = 0u, count = 0u;
-    if (valid) count = countSmall(triangle, place, covering);
+    if (valid) count = countSmall(triangle, axes, place, covering);
     const uint position = ldcReserve(count);
-    if (covering != 0u) writeSmall(triangle, place, covering, position);
+    if (covering != 0u) writeSmall(triangle, axes, place, covering, position);
     cutMany();
 }

@@ -7,12 +7,12 @@ PARAMS(LdcParams)
 BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(, 1, uint, occupancy_sums)
 BUFFER(readonly, 2, LdcBody, bodies)
-BUFFER(readonly, 3, LdcCounters, counters)
+BUFFER(readonly, 3, LdcExtent, extent)
 #include "ldc/ldc_bodies.glsl"
 
 void main() {
     const uint axis = params.axis, index = GLOBAL_INDEX;
-    if (index >= counters[0].lines[axis] || !LDC_CELLS_FIT(counters[0])) return;
+    if (index >= extent[0].lines[axis] || !LDC_CELLS_FIT(extent[0])) return;
     const uint body = axis == 0u ? ldcBodyOfLineX(index) : (axis == 1u ? ldcBodyOfLineY(index) : ldcBodyOfLineZ(index));
     const uint line = index - bodies[body].first_line[axis];
     const uvec3 tops = bodies[body].grid.dims >> 4u;

@@ -15,10 +15,12 @@ BUFFER(writeonly, 8, uint, sample_ids)
 BUFFER(readonly, 9, LdcBody, bodies)
 BUFFER_ALIGNED(writeonly, 10, uvec4, patches)
 BUFFER_ALIGNED(readonly, 11, LdcCorners, corners)
+BUFFER(writeonly, 12, LdcCounters, readback)
 #include "ldc/ldc_corners.glsl"
 #include "ldc/ldc_projected.glsl"
 
 void main() {
+    if (GLOBAL_INDEX == 0u) readback[0] = counters[0];  // all of them are final by now
     // Everything is redone when it did not fit: then nothing here may be trusted.
     if (!LDC_FITS(counters[0])) return;
     const uint i = GLOBAL_INDEX;
@@ -28,13 +30,13 @@ void main() {
     const CubeGrid grid = bodies[node_cells[voxel >> 6u].y].grid;
     const uvec3 position = uvec3(cell & 1023u, cell >> 10u & 1023u, cell >> 20u) * 4u + ldcCell64(voxel & 63u);
     const bool last = slot + 1u == voxel_counts[voxel];
-    const uint at = (voxel_table[params.first_node * 64u + voxel] & 0x7fffffffu) + slot;
+    const uint at = (voxel_table[params.first_node * 64u + voxel] & PEELRAY_FIRST) + slot;
     if (params.sampling == LDC_CONSERVATIVE) {
         vec3 a, b, c;
         const LdcCorners packed = corners[id >> 2u];
         ldcCornersOf(packed, a, b, c);
         // The normal by which the rasteriser chose the axis.
-        patches[at] = ldcPackPatch(ldcProjectFrom(grid.inv_voxel, a, b, c, ldcNormalOf(packed), id & 3u), position, id, last);
+        patches[at] = ldcPackPatch(ldcProjectFrom(grid.inv_voxel, a, b, c, ldcNormalOf(packed), id & 3u), position, id, 1.0, PEELRAY_MARGIN, last);
         return;
     }
     samples[at] = ldcPackSample(ldcProjected(grid, id), position, id & 3u, params.sampling, last);

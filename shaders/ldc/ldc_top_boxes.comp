@@ -7,8 +7,7 @@ BUFFER(readonly, 0, uvec2, node_masks)
 BUFFER(readonly, 1, uint, occupancy_sums)
 BUFFER(writeonly, 2, uvec2, top_table)
 BUFFER(readonly, 3, LdcBody, bodies)
-BUFFER(readonly, 4, LdcCounters, counters)
-BUFFER(writeonly, 5, LdcCounters, readback)
+BUFFER(readonly, 4, LdcExtent, extent)
 #include "ldc/ldc_bodies.glsl"
 
 uint first_top;  // of the body, in the build's tables
@@ -28,8 +27,7 @@ bool boxEmpty(ivec3 lo, ivec3 hi, ivec3 tops) {
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i == 0u) readback[0] = counters[0];  // all of them are final by now
-    if (i >= counters[0].cells || !LDC_CELLS_FIT(counters[0]) || node_masks[i] != uvec2(0)) return;
+    if (i >= extent[0].cells || !LDC_CELLS_FIT(extent[0]) || node_masks[i] != uvec2(0)) return;
     const uint body = ldcBodyOfCell(params.first_cell + i);
     first_top = ldcFirstCell(body);
     const ivec3 tops = ivec3(bodies[body].grid.dims >> 4u);

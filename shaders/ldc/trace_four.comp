@@ -20,7 +20,7 @@ void main() {
         own_rays[k] = PeelrayRay(ray.origin, ray.tmin, ray.direction, first + uint(k) < count ? ray.tmax : ray.tmin);
         own[k] = queueSkip(i);
     }
-    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE, 0u, 0u);
+    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, PEELRAY_ONE, 0u, 0u, false);
     PeelrayHit found[4];
     countNothing();
     peelrayTraceFour(params.tree.instances, own_rays, own, options, found);

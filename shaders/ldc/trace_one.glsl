@@ -11,7 +11,8 @@ void main() {
     const uint i = GLOBAL_INDEX;
     if (i >= queueLength()) return;
     const Ray ray = rays[i];
-    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch, instance_count, bare_count);
+    const PeelrayOptions options = PeelrayOptions(any_hit, hit_test, traversal, params.tolerance, params.block, batch, instance_count, bare_count,
+                                                  refined);
     countNothing();
     queueStore(i, ray, peelrayTrace(params.tree, PeelrayRay(ray.origin, ray.tmin, ray.direction, ray.tmax), queueSkip(i), options));
     countRay(COUNT_TRACED, 0u, i);

@@ -9,6 +9,7 @@ layout(constant_id = 3) const uint traversal = 0u;  // PEELRAY_VOXELS, ...
 layout(constant_id = 4) const bool masked = false;  // the scene has masked materials
 layout(constant_id = 5) const bool counting = false;
 layout(constant_id = 10) const bool single_sided = false;  // the scene has single-sided materials
+layout(constant_id = 18) const bool refined = false;   // some voxels are
 layout(constant_id = 8) const bool deferred = false;  // triangles are tested after their list's samples
 PARAMS(TraceParams)
 #include "ldc/cube_fetch.glsl"

@@ -310,6 +310,7 @@ void add_measured(SettingList& list, BenchArguments& a) {
               .limits = kResolutionLimits,
               .excludes = {"quick"}},
              parse_resolution);
+    add_refine(list, a.refine, {.group = group, .help = "of exact: voxels with more than N samples become finer ones"});
     add_choices(list, a.traversals,
                 {.name = "traversals",
                  .group = group,

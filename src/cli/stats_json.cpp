@@ -81,6 +81,10 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
     if (!cubes.no_room.empty())
         json["no_room"] = {
             {"n", cubes.no_room_resolution}, {"hit", name_of(cubes.no_room_hit)}, {"why", cubes.no_room}};
+    if (cubes.counts.refined != 0) {
+        json["refined_voxels"] = cubes.counts.refined;
+        json["refined_samples"] = cubes.counts.fine;
+    }
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);

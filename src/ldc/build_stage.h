@@ -19,10 +19,12 @@ struct BuildSize {
 struct BuildState {
     Device& device;
     Cubes& cubes;
-    TableSize before;    ///< what the tables hold of bodies that were built earlier and stay
+    TableSize before;  ///< what the tables hold of bodies that were built earlier and stay
+    Refinement refinement;
     LdcParams params{};  ///< with the capacities that the buffers have now
     Buffer counters;     ///< one LdcCounters
     Buffer readback;     ///< the same after the build, for the host
+    Buffer extent;       ///< one LdcExtent
     Buffer groups;       ///< LDC_GROUPS workgroup counts
     Buffer fragments;    ///< LdcFragment each
     Buffer node_masks;   ///< two uint32 per 16³ cell: its occupied nodes; by pixel: not used
@@ -50,11 +52,13 @@ class BuildStage {
     /// Clears what the build counts in. Runs before all stages.
     virtual void clear(Commands&, const BuildState&) {}
     virtual void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) = 0;
-    /// After the submission: raises the capacities that were too small; true if there were any.
-    virtual bool grow(BuildState& state, const LdcCounters& counts) = 0;
+    /// After the submission: adds what this stage counted apart from the counters.
+    virtual void read(BuildCounts&) const {}
+    /// Raises the capacities that were too small; true if there were any.
+    virtual bool grow(BuildState& state, const BuildCounts& counts) = 0;
     /// After the first build that fitted: lowers the capacities that were guessed to what is needed, with a reserve,
     /// since passes run as often as they say. The buffers stay.
-    virtual void settle(BuildState&, const LdcCounters&) {}
+    virtual void settle(BuildState&, const BuildCounts&) {}
     /// Bytes of scratch memory held.
     virtual uint64_t bytes() const = 0;
 };

@@ -4,10 +4,11 @@
 
 namespace peelray {
 
-/// Pixels of a triangle's bounds that one thread goes through: fewer where there are too few triangles to fill a GPU.
-static uint32_t small_pixels(uint32_t triangles) {
-    return triangles < 30'000 ? 12 : triangles < 100'000 ? 24 : 48;
-}
+/// Up to so many triangles do not fill a GPU with a thread each: then the pixels of a workgroup's are shared by four
+/// threads for each.
+constexpr uint32_t kFewTriangles = 150'000;
+/// Most pixels of a small triangle's bounds; a larger one is cut into blocks.
+constexpr uint32_t kSmallPixels = 48;
 
 void ComputeRasterizer::guess(BuildState& state, const BuildSize& size) {
     state.params.block_capacity = bounded(state, size.pixels / 64 + 4096, 8);
@@ -31,10 +32,9 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
                                 {"blocks", blocks_},
                                 Binding::if_used("corners", corners ? &state.cubes.corners : nullptr)};
     const std::vector<Binding> bindings = with_hit_materials(geometry, triangles);
-    commands.run(
-        device.pass("ldc_raster",
-                    {{"masked", masked}, {"small_pixels", small_pixels(p.triangles)}, {"keeps_corners", corners}}),
-        bindings, p, groups_for(p.triangles, 64));
+    commands.run(device.pass(p.triangles <= kFewTriangles ? "ldc_raster_few" : "ldc_raster",
+                             {{"masked", masked}, {"small_pixels", kSmallPixels}, {"keeps_corners", corners}}),
+                 bindings, p, groups_for(p.triangles, 64));
     if (p.block_capacity == 0) return;
     state.record_groups(commands);
     commands.run_indirect(device.pass("ldc_raster_blocks", {{"masked", masked}}), bindings, p, state.groups,
@@ -42,11 +42,11 @@ void ComputeRasterizer::record(Commands& commands, const BuildState& state, cons
 }
 
 /// Scenes without large triangles do without the passes for them.
-void ComputeRasterizer::settle(BuildState& state, const LdcCounters& counts) {
+void ComputeRasterizer::settle(BuildState& state, const BuildCounts& counts) {
     if (counts.blocks == 0) state.params.block_capacity = 0;
 }
 
-bool ComputeRasterizer::grow(BuildState& state, const LdcCounters& counts) {
+bool ComputeRasterizer::grow(BuildState& state, const BuildCounts& counts) {
     return grow_capacity(state.params.block_capacity, counts.blocks, state.most() / 8);
 }
 

@@ -10,8 +10,8 @@ class ComputeRasterizer : public BuildStage {
     void guess(BuildState& state, const BuildSize& size) override;
     void allocate(Commands& commands, BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
-    bool grow(BuildState& state, const LdcCounters& counts) override;
-    void settle(BuildState& state, const LdcCounters& counts) override;
+    bool grow(BuildState& state, const BuildCounts& counts) override;
+    void settle(BuildState& state, const BuildCounts& counts) override;
     uint64_t bytes() const override { return blocks_.bytes(); }
 
   private:

@@ -58,9 +58,10 @@ std::unique_ptr<BuildStage> make_rasterizer(Device& device, const Cubes& cubes) 
 }  // namespace
 
 CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
-                         const TableSize& before)
+                         const TableSize& before, const Refinement& refinement)
     : cubes_(cubes),
-      state_(new BuildState{device, cubes, before, {}, {}, {}, {}, {}, {}, {}, {}}),
+      state_(new BuildState{
+          device, cubes, before, cubes.has_patches() ? refinement : Refinement{}, {}, {}, {}, {}, {}, {}, {}, {}, {}}),
       rasterizer_(make_rasterizer(device, cubes)),
       order_(make_order(cubes.layout())) {
     const CubeBody &front = cubes.bodies()[first], &back = cubes.bodies()[first + bodies - 1];
@@ -77,6 +78,7 @@ CubeBuilder::CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint3
     p.by_pixel = cubes.layout().by_pixel() ? (cubes.layout().half_depth ? 2 : 1) : 0;
     const MemoryPart part(device, kScratch);
     state_->counters = Buffer(device, "build counters", sizeof(LdcCounters));
+    state_->extent = Buffer(device, "build extent", sizeof(LdcExtent));
     state_->groups = Buffer(device, "build workgroups", LDC_GROUPS * 12);
     state_->readback = Buffer(device, "build counters readback", sizeof(LdcCounters), Buffer::Where::readback);
     const BuildSize size = size_of(cubes.bodies(), first, bodies);
@@ -108,7 +110,8 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
                  {{"body_lower", cubes_.table.lower},
                   {"body_upper", cubes_.table.upper},
                   {"bodies", cubes_.table.entries},
-                  {"counters", state_->counters}},
+                  {"counters", state_->counters},
+                  {"extent", state_->extent}},
                  state_->params, {1});
     rasterizer_->record(commands, *state_, triangles);
     order_->record(commands, *state_, triangles);
@@ -116,7 +119,9 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
 }
 
 bool CubeBuilder::finish(Commands& commands) {
-    std::memcpy(&counts_, state_->readback.mapped(), sizeof counts_);
+    counts_ = {};
+    std::memcpy(static_cast<LdcCounters*>(&counts_), state_->readback.mapped(), sizeof(LdcCounters));
+    order_->read(counts_);
     if (counts_.wrapped & LDC_FAR_TOLERANCE)
         fail(
             "the tolerance is more than {} voxels of a cube, which {} voxel cannot hold: choose a smaller {} or {}, or "
@@ -155,9 +160,15 @@ void CubeBuilder::build(Commands& commands, const TriangleBuffers& triangles) {
     } while (!finish(commands));
 }
 
+TableSize CubeBuilder::size() const {
+    // What was refined has a block of finer voxels, behind the nodes.
+    return {counts_.cells, counts_.occupied, uint64_t(counts_.nodes) + counts_.blocks_of_finer,
+            uint64_t(counts_.fragments) + counts_.fine};
+}
+
 uint64_t CubeBuilder::scratch_bytes() const {
-    return state_->counters.bytes() + state_->groups.bytes() + state_->fragments.bytes() + state_->node_masks.bytes() +
-           state_->captured.bytes() + rasterizer_->bytes() + order_->bytes();
+    return state_->counters.bytes() + state_->extent.bytes() + state_->groups.bytes() + state_->fragments.bytes() +
+           state_->node_masks.bytes() + state_->captured.bytes() + rasterizer_->bytes() + order_->bytes();
 }
 
 }  // namespace peelray

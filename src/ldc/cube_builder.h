@@ -24,7 +24,7 @@ class CubeBuilder {
     /// For `bodies` bodies of `cubes` (which must outlive it) from `first` on. `before`: what the tables hold of bodies
     /// that were built earlier and stay. Makes room: a guess from the bodies' bounds and numbers of triangles.
     CubeBuilder(Device& device, Commands& commands, Cubes& cubes, uint32_t first, uint32_t bodies,
-                const TableSize& before = {});
+                const TableSize& before = {}, const Refinement& refinement = {});
     ~CubeBuilder();
 
     /// What record() draws, where the layout says `streams`. The fragments are guessed from the bodies' triangles.
@@ -43,8 +43,8 @@ class CubeBuilder {
     void build(Commands& commands, const TriangleBuffers& triangles);
 
     /// Of the last finished build.
-    const LdcCounters& counts() const { return counts_; }
-    TableSize size() const { return {counts_.cells, counts_.occupied, counts_.nodes, counts_.fragments}; }
+    const BuildCounts& counts() const { return counts_; }
+    TableSize size() const;
     /// Bytes of scratch memory held beside the cubes.
     uint64_t scratch_bytes() const;
     /// How often a build had to be redone since the builder was made.
@@ -56,7 +56,7 @@ class CubeBuilder {
     Cubes& cubes_;
     std::unique_ptr<BuildState> state_;
     std::unique_ptr<BuildStage> rasterizer_, order_;
-    LdcCounters counts_{};
+    BuildCounts counts_{};
     uint32_t redone_ = 0;
     bool settled_ = false;
 };

@@ -32,12 +32,12 @@ Cubes::Cubes(Device& device, std::vector<CubeBody> bodies, Sampling sampling, co
 }
 
 void Cubes::reserve(Commands& commands, const TableSize& size, const TableSize& kept) {
-    // Entries are 31-bit numbers of nodes and samples.
+    // Entries are 30-bit numbers of nodes and samples.
     const MemoryPart part(device_, "cubes");
     if (size.cells >= 1ull << 32)
         throw NoRoom(fmt::format("{} pixels or cells are more than the cubes' tables can number", size.cells),
                      device_.room_advice());
-    if (size.nodes >= 1u << 25 || size.samples >= 1u << 31)
+    if (size.nodes >= 1u << 25 || size.samples >= 1u << 30)
         throw NoRoom(
             fmt::format("{} nodes and {} samples are more than the cubes' tables can number", size.nodes, size.samples),
             device_.room_advice());

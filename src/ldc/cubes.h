@@ -50,11 +50,25 @@ struct CubeLayout {
 /// cubes, each side is rounded up to a multiple of 16 voxels. Throws Error unless 16 ≤ resolution ≤ 2048.
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution);
 
+/// Which voxels become 4³ finer ones, in cubes for `exact` hits by voxel: those that hold more than `above` samples, if
+/// some voxel holds more than `from`. No hit depends on it.
+struct Refinement {
+    uint32_t above = ~0u, from = 0;
+    bool operator==(const Refinement&) const = default;
+};
+
+/// What a build has counted.
+struct BuildCounts : LdcCounters {
+    uint32_t refined = 0;          ///< voxels that became 4³ finer ones
+    uint32_t blocks_of_finer = 0;  ///< room that the voxel table has for them
+    uint32_t fine = 0;             ///< samples of finer voxels
+};
+
 /// How much of the cubes' tables some bodies take.
 struct TableSize {
     uint64_t cells = 0;     ///< 16³-voxel cells; by pixel: pixels
     uint64_t occupied = 0;  ///< of them occupied
-    uint64_t nodes = 0;     ///< occupied 4³-voxel nodes
+    uint64_t nodes = 0;     ///< occupied 4³-voxel nodes, and voxels that are refined
     uint64_t samples = 0;
 
     /// 8 per cell, or per pixel an offset and half a range.
@@ -94,13 +108,16 @@ class Cubes {
     BodyTable table;    ///< the bodies, with the grids that the last build gave them
     Buffer top_table;   ///< uvec2 per 16³ cell: bit 31 of x: occupied, y = its number; else an empty box in 16³ cells
     Buffer node_table;  ///< uint32, 64 per occupied 16³ cell: bit 31: occupied node's number; else an empty box
-    Buffer voxel_table;  ///< uint32, 64 per occupied node: bit 31: first sample of a list; else an empty box in voxels
+    /// uint32, 64 per occupied node: bit 31: first sample of a list, or bits 31 and 30: block of 64 entries of the
+    /// finer voxels; else an empty box in voxels. Behind those of the nodes lie the blocks.
+    Buffer voxel_table;
     Buffer pixel_offsets;  ///< by pixel: uint32 per pixel of the three LDIs, and one more: where its samples begin
     Buffer pixel_ranges;   ///< by pixel: vec2 per block, or per cell of the pyramid: least and greatest depth of a hit
     Buffer samples;        ///< uvec2 each: depth, slopes, axis, last-of-list (ldcPackSample); by pixel: depth, slopes
     Buffer sample_ids;     ///< uint32 each: triangle · 4 + axis
     Buffer patches;        ///< uvec4 each: plane, coverage, last-of-list, id (ldcPackPatch)
     Buffer corners;        ///< where there are patches: LdcCorners of every triangle
+    bool refined = false;  ///< voxels may be: rays look
     Buffer sample_attributes;  ///< of drawn streams: uvec2 each: normal, colour (LdcCaptured)
 
   private:

@@ -148,7 +148,7 @@ void PeelRasterizer::record_body(Commands& commands, const BuildState& state, co
     }
 }
 
-bool PeelRasterizer::grow(BuildState& state, const LdcCounters& counts) {
+bool PeelRasterizer::grow(BuildState& state, const BuildCounts& counts) {
     // Nothing was drawn: the order's turn.
     if (counts.cells > state.params.cell_capacity) return false;
     std::vector<uint32_t> layers(passes_.size());

@@ -120,7 +120,7 @@ void PixelOrder::record_ranges(Commands& commands, const BuildState& state) {
                      p, groups_for(p.cell_capacity >> std::min(2 * p.level, 8u), 64));
 }
 
-bool PixelOrder::grow(BuildState& state, const LdcCounters& counts) {
+bool PixelOrder::grow(BuildState& state, const BuildCounts& counts) {
     LdcParams& p = state.params;
     bool grown = grow_capacity(p.cell_capacity, counts.cells,
                                std::min(state.most() / 8, left_of(state.most() / 4, state.before.cells)));

@@ -12,7 +12,7 @@ class PixelOrder : public BuildStage {
     void allocate(Commands& commands, BuildState& state) override;
     void clear(Commands& commands, const BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
-    bool grow(BuildState& state, const LdcCounters& counts) override;
+    bool grow(BuildState& state, const BuildCounts& counts) override;
     uint64_t bytes() const override;
 
   private:

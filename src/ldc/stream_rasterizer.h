@@ -11,7 +11,7 @@ class StreamRasterizer : public BuildStage {
     void guess(BuildState& state, const BuildSize& size) override;
     void allocate(Commands& commands, BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
-    bool grow(BuildState&, const LdcCounters&) override { return false; }
+    bool grow(BuildState&, const BuildCounts&) override { return false; }
     uint64_t bytes() const override { return 0; }
 
   private:

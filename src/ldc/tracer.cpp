@@ -36,6 +36,7 @@ Constants traversal_constants(const Device& device, const TracedScene& scene, Hi
     } else {
         constants.push_back({"bare_count", scene.instances.bare(scene.cubes.table)});
         constants.push_back({"deferred", device.immediate});
+        constants.push_back({"refined", scene.cubes.refined});
     }
     return constants;
 }

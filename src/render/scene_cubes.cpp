@@ -19,6 +19,17 @@ constexpr size_t kFewBodies = 16;
 /// an eighth.
 constexpr float kCoarser = 0.75f, kCoarsest = 0.1f;
 
+/// Of cubes that are built for every frame, and of those that are built once. Where no list is four times as long as
+/// the others may be, rays gain less than the build takes (docs/lab_notes.md).
+constexpr Refinement kRebuilt{24, 90}, kKept{16, 48};
+
+/// Software devices have no lanes that would wait for the longest list of a group.
+Refinement refinement_of(const Device& device, const CubeChoice& choice, bool kept) {
+    if (choice.refine) return {*choice.refine, 0};
+    if (device.immediate) return {};
+    return kept ? kKept : kRebuilt;
+}
+
 float longest_side(const Assembly::Body& body) {
     const glm::vec3 size = body.upper - body.lower;
     return std::max({size.x, size.y, size.z, 0.0f});
@@ -65,8 +76,8 @@ std::vector<CubeBody> cube_bodies(const Assembly& assembly, const CubeChoice& ch
     return bodies;
 }
 
-LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
-    LdcCounters sum = a;
+BuildCounts sum_of(const BuildCounts& a, const BuildCounts& b) {
+    BuildCounts sum = a;
     sum.fragments += b.fragments;
     sum.blocks += b.blocks;
     sum.listed += b.listed;
@@ -78,6 +89,8 @@ LdcCounters sum_of(const LdcCounters& a, const LdcCounters& b) {
     sum.longest = std::max(a.longest, b.longest);
     sum.complexity = std::max(a.complexity, b.complexity);
     sum.passes += b.passes;
+    sum.refined += b.refined;
+    sum.fine += b.fine;
     sum.degenerate += b.degenerate;
     sum.invalid += b.invalid;
     return sum;
@@ -136,7 +149,7 @@ bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangle
     if (fixed_built_) return false;
     if (fixed_ > 0) {
         // Its scratch memory goes when the work is done.
-        CubeBuilder builder(device_, commands, cubes_, 0, fixed_);
+        CubeBuilder builder(device_, commands, cubes_, 0, fixed_, {}, refinement_of(device_, choice_, true));
         builder.build(commands, triangles);
         fixed_counts_ = builder.counts();
         fixed_size_ = builder.size();
@@ -146,7 +159,8 @@ bool SceneCubes::build_fixed(Commands& commands, const TriangleBuffers& triangle
     if (fixed_ > 0) cubes_.trim(fixed_size_);
     const auto all = uint32_t(cubes_.bodies().size());
     if (fixed_ < all)
-        builder_ = std::make_unique<CubeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_);
+        builder_ = std::make_unique<CubeBuilder>(device_, commands, cubes_, fixed_, all - fixed_, fixed_size_,
+                                                 refinement_of(device_, choice_, false));
     fixed_built_ = true;
     return fixed_ > 0;
 }

@@ -17,6 +17,8 @@ struct CubeChoice {
     uint32_t ldc = 0;  ///< voxels along the longest side of the largest body; 0: chosen for each
     /// Of resolutions that are chosen: less than 1 where those would find no room.
     float fineness = 1;
+    /// Voxels with more samples become finer ones; none: chosen. No hit depends on it.
+    std::optional<uint32_t> refine;
     bool may_be_planar = false;  ///< `hit`, exact, was chosen: planar hits may take its place
     HitTest hit = HitTest::exact;
     bool ldc_each = false;     ///< `ldc` voxels for every body, not only for the largest
@@ -69,7 +71,7 @@ class SceneCubes {
         std::string no_room;
         uint32_t no_room_resolution = 0;
         HitTest no_room_hit = HitTest::exact;
-        LdcCounters counts{};  ///< of all bodies; longest: the longest list of all
+        BuildCounts counts{};  ///< of all bodies; longest: the longest list of all
         uint64_t bytes = 0;    ///< of the tables in use
         uint64_t scratch_bytes = 0;
         uint32_t redone = 0;  ///< how often a build did not fit and was done again
@@ -81,7 +83,7 @@ class SceneCubes {
     CubeChoice choice_;
     uint32_t fixed_;
     Cubes cubes_;
-    LdcCounters fixed_counts_{};
+    BuildCounts fixed_counts_{};
     TableSize fixed_size_;
     bool fixed_built_ = false;
     uint32_t fixed_redone_ = 0;

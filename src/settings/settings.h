@@ -180,9 +180,10 @@ inline void add_light(SettingList& list, LightArguments& a) {
 
 /// How rays are traced in the layered depth cube.
 struct TracingArguments {
-    std::optional<Tracer> tracer;  ///< none: ldc, but for what resolves it by the machine (automatic_tracer)
-    std::optional<HitTest> hit;    ///< none: chosen by the number of triangles
-    std::optional<uint32_t> ldc;   ///< none: chosen for each part
+    std::optional<Tracer> tracer;    ///< none: ldc, but for what resolves it by the machine (automatic_tracer)
+    std::optional<HitTest> hit;      ///< none: chosen by the number of triangles
+    std::optional<uint32_t> ldc;     ///< none: chosen for each part
+    std::optional<uint32_t> refine;  ///< none: by what is built once, what for every frame, and the device
     double tolerance = 0.001;
     std::optional<BuilderKind> builder;  ///< none: compute
     Routing routing = Routing::geometry;
@@ -215,6 +216,16 @@ inline void add_block(SettingList& list, glm::uvec2& block, SettingInfo info) {
                 [](const glm::uvec2& value) { return std::optional(print_text(value)); });
 }
 
+inline void add_refine(SettingList& list, std::optional<uint32_t>& refine, SettingInfo info) {
+    info.name = "refine";
+    info.form = "auto|N";
+    info.expected = "auto or a number of samples from 1 up";
+    info.none = "auto";
+    info.limits = kRefineLimits;
+    info.of_cubes = true;
+    add_setting(list, refine, std::move(info));
+}
+
 inline constexpr Limits kToleranceLimits{
     .least = 0, .open = true, .fault = "a tolerance of {} is impossible", .choose = "a distance above 0"};
 
@@ -230,6 +241,9 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .none = "auto",
                  .limits = kResolutionLimits,
                  .of_cubes = true});
+    add_refine(list, a.refine,
+               {.group = group,
+                .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones; no hit depends on it"});
     add_setting(list, a.tolerance,
                 {.name = "tolerance",
                  .group = group,

@@ -10,6 +10,7 @@ void choose_hit(RenderSettings& settings, std::optional<HitTest> hit) {
 void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
     CubeLayout& layout = settings.cubes.layout;
     settings.cubes.ldc = tracing.ldc.value_or(0);
+    settings.cubes.refine = tracing.refine;
     settings.cubes.tolerance = float(tracing.tolerance);
     layout.traversal = tracing.traversal;
     layout.block = tracing.block;

@@ -124,6 +124,11 @@ TEST_F(CubeTest, SoupsInLongAndFlatBoxes) {
     expect_right(soup(3, 300, vec3(40, 30, 1), 80.0f / 128), 128);
 }
 
+TEST_F(CubeTest, MoreTrianglesThanThreadsShare) {
+    // From 150,000 on a thread goes through the pixels of its own triangle.
+    expect_right(soup(5, 150'001, vec3(1), 0.02f), 16);
+}
+
 TEST_F(CubeTest, FarFromTheOrigin) {
     expect_right(test::moved(soup(4, 300, vec3(1), 2.0f / 64), vec3(500, -300, 100)), 64);
 }

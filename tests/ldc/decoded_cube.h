@@ -137,7 +137,9 @@ class DecodedCube {
             }
             any = true;
             voxels++;
-            decode_list(corner + glm::uvec3(k % 4, k / 4 % 4, k / 16), entry & 0x7fffffff);
+            const glm::uvec3 cell = corner + glm::uvec3(k % 4, k / 4 % 4, k / 16);
+            ASSERT_EQ(entry >> 30, 2u) << "a refined voxel in a cube that was not to be refined";
+            decode_list(cell, entry & 0x3fffffff);
         }
         ASSERT_TRUE(any) << "an occupied node without a voxel";
     }

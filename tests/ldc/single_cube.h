@@ -17,10 +17,10 @@ struct SingleCube {
     SingleCube(Device& device, Commands& commands, std::span<const glm::vec3> positions,
                std::span<const glm::uvec3> indices, const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution,
                Sampling sampling, const CubeLayout& layout = {}, float tolerance = 0,
-               const BaseColorBuffers* masks = nullptr)
+               const BaseColorBuffers* masks = nullptr, const Refinement& refinement = {})
         : triangles(device, positions, indices),
           cubes(device, {{0, uint32_t(indices.size()), resolution, lower, upper, tolerance}}, sampling, layout),
-          builder(device, commands, cubes, 0, 1),
+          builder(device, commands, cubes, 0, 1, {}, refinement),
           instances(device, {{0, 0, 0}}) {
         triangles.masks = masks;
         const GpuTransform here{glm::mat3(1), glm::vec3(0)};
@@ -34,7 +34,7 @@ struct SingleCube {
         commands.submit();
         grid = cubes.table.download(commands)[0].grid;
     }
-    const LdcCounters& counts() const { return builder.counts(); }
+    const BuildCounts& counts() const { return builder.counts(); }
     TracedScene traced() const { return {cubes, instances, triangles}; }
 };
 

@@ -10,11 +10,11 @@ namespace peelray::test {
 class TracedBody {
   public:
     TracedBody(Device& device, const Geometry& geometry, uint32_t resolution, HitTest test,
-               const CubeLayout& layout = {}, float tolerance = 0.001f)
+               const CubeLayout& layout = {}, float tolerance = 0.001f, const Refinement& refinement = {})
         : device_(device),
           commands_(device),
           cube_(device, commands_, geometry.positions, geometry.triangles, geometry.lower, geometry.upper, resolution,
-                sampling_for(test), layout, tolerance),
+                sampling_for(test), layout, tolerance, nullptr, refinement),
           test_(test),
           tolerance_(tolerance) {}
 

@@ -14,7 +14,7 @@ TEST(CubeOptions, AreThoseOfCubesAndOfMeasuringADevice) {
     for (const SettingEntry& entry : options_of(arguments))
         if (entry.info.of_cubes) names.insert(entry.info.name);
     EXPECT_EQ(names, (std::set<std::string>{"batch", "block", "builder", "counters", "depth", "hit", "ldc", "rebuild",
-                                            "repeat", "routing", "tolerance", "traversal", "visibility"}));
+                                            "refine", "repeat", "routing", "tolerance", "traversal", "visibility"}));
 }
 
 }  // namespace
