@@ -121,15 +121,11 @@ std::vector<Texture> make_mipmaps(const Texture& texture, bool is_data) {
     }
 }
 
-Mipmaps::Mipmaps(const Scene& scene) : scene_(scene) {
-    for (const Material& material : scene.materials)
-        for (const auto use : material_textures)
-            if (material.*use) made_.try_emplace({(material.*use).texture, !is_color(use)});
-}
+Mipmaps::Mipmaps(const Scene& scene) : scene_(scene), made_(std::make_unique<Made[]>(2 * scene.textures.size())) {}
 
 const std::vector<Texture>& Mipmaps::of(int texture, bool is_data) const {
-    Made& made = made_.at({texture, is_data});
-    std::call_once(made.once, [&] {
+    Made& made = made_[2 * size_t(texture) + is_data];
+    made.once([&] {
         const Texture& source = scene_.textures[size_t(texture)];
         if (source.mipmaps != Texture::Mipmaps::none) made.levels = make_mipmaps(source, is_data);
     });

@@ -1,11 +1,10 @@
 // The smaller levels of textures. Every tracer filters by the same ones.
 #pragma once
 
-#include <map>
-#include <mutex>
-#include <utility>
+#include <memory>
 #include <vector>
 
+#include "base/once.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -26,11 +25,11 @@ class Mipmaps {
 
   private:
     struct Made {
-        std::once_flag once;
+        Once once;
         std::vector<Texture> levels;
     };
     const Scene& scene_;
-    mutable std::map<std::pair<int, bool>, Made> made_;
+    std::unique_ptr<Made[]> made_;  ///< per texture of colours and of data
 };
 
 /// Which levels of a texture serve a footprint of so many texels, and how far it is from the first to the second.
