@@ -113,9 +113,11 @@ Vec3 Shader::environment_light(const Lit& at) {
     Surroundings::Drawn drawn{};
     if (bright) {
         drawn = context_.surroundings.draw(u);
+        context_.surroundings.prefetch(drawn.place, false);
     } else {
         drawn.direction = draw_scattered(at, u);
         drawn.place = Surroundings::place(drawn.direction);
+        context_.surroundings.prefetch(drawn.place, false);
         drawn.density = context_.surroundings.density_at(drawn.place);
     }
     const real mixed = by_brightness * drawn.density + (1 - by_brightness) * scattered_density(at, drawn.direction);

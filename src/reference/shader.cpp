@@ -109,6 +109,11 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
     const real kept = guided ? 1 : roulette(largest(next.weight), path, RANDOM_ROULETTE + which);
     if (kept == 0) return Vec3(0);
     next.weight /= kept;
+    if (!is_reference && next.density > 0) {
+        // What the ray sees if it meets nothing comes while it is traced.
+        next.ahead = Surroundings::place(next.direction);
+        context_.surroundings.prefetch(*next.ahead, context_.samples_environment());
+    }
     return branch.weight * radiance(next, hit(next)) / kept;
 }
 
@@ -175,7 +180,7 @@ Vec3 Shader::missed(const Path& path, const Vec3& weight) {
     const bool straight = path.is_straight();
     if (straight) through_ += luminance(weight);
     if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
-    const Vec2 place = Surroundings::place(path.direction);
+    const Vec2 place = path.ahead ? *path.ahead : Surroundings::place(path.direction);
     const real share = environment_share(place, path.density);
     if (share == 0) return Vec3(0);
     if (context_.filters_environment() && !path.sees_sun) return share * filtered_lobe(path.direction, path.cone);

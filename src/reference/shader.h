@@ -92,6 +92,7 @@ class Shader {
         bool is_straight() const { return passed == level; }
         bool guided = false;  ///< the denoiser's guides are looked for along it
         real length = 0;      ///< of the path so far
+        std::optional<Vec2> ahead;  ///< where the ray looks in the environment's map, if that is known
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}

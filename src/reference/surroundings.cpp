@@ -38,6 +38,10 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
         const real height = 2 * std::sin(optics::pi * (row + 0.5) / rows) * std::sin(optics::pi / (2 * real(rows)));
         cell_sizes_.push_back(height * optics::pi / rows);
     }
+    const auto leaf = environment.distribution.quads.begin() +
+                      EnvironmentDistribution::first(environment.distribution.depth);
+    leaves_.resize(size_t(environment.distribution.quads.end() - leaf) / 4);
+    for (size_t i = 0; i < leaves_.size(); i++) std::copy_n(leaf + std::ptrdiff_t(4 * i), 4, leaves_[i].quads);
     for (uint32_t i = 0; i < entry_sides * entry_sides; i++)
         entries_.push_back(entry_for(i % entry_sides, i / entry_sides));
 }
@@ -75,7 +79,7 @@ Surroundings::Entry Surroundings::entry_for(uint32_t column, uint32_t row) const
         entry.level = 1;
         entry.code = entry.cell.column = *half;
     }
-    while (entry.level > 0 && entry.level < tree.depth) {
+    while (entry.level > 0 && entry.level + 1 < tree.depth) {
         const glm::dvec4 quad(tree.quads[EnvironmentDistribution::first(entry.level) + entry.code]);
         const double left = quad[0] + quad[2], right = quad[1] + quad[3], left_share = left / (left + right);
         const auto go_right = x.side(across.split(left_share));
@@ -153,14 +157,22 @@ Surroundings::Drawn Surroundings::draw(Vec2 random) const {
         random = glm::clamp((random - entry.first) * entry.scale, Vec2(0), Vec2(below_one));
     }
     real probability = 0;
-    for (; level <= tree.depth; level++) {
-        const glm::vec4& quad = tree.quads[EnvironmentDistribution::first(level) + code];
+    const auto enter = [&](const glm::vec4& quad) {
         const real left = real(quad[0]) + quad[2], right = real(quad[1]) + quad[3];
         const uint32_t column = choose_first(random.x, left / (left + right)) ? 0 : 1;
         const uint32_t row = choose_first(random.y, quad[int(column)] / (column == 0 ? left : right)) ? 0 : 1;
         probability = quad[int(column + 2 * row)];
         code = 4 * code + column + 2 * row;
         cell = {2 * cell.column + column, 2 * cell.row + row};
+    };
+    for (; level + (is_reference ? 0 : 2) <= tree.depth; level++)
+        enter(tree.quads[EnvironmentDistribution::first(level) + code]);
+    if (!is_reference) {
+        // The last two levels from one line of memory.
+        const Leaves& leaves = leaves_[code];
+        const auto sum = [](const glm::vec4& quad) { return (quad[0] + quad[1]) + (quad[2] + quad[3]); };
+        enter({sum(leaves.quads[0]), sum(leaves.quads[1]), sum(leaves.quads[2]), sum(leaves.quads[3])});
+        enter(leaves.quads[code & 3]);
     }
     const real rows = 1u << tree.depth, across = (cell.column + random.x) / (2 * rows),
                azimuth = (2 * across - 1) * optics::pi;
@@ -171,16 +183,34 @@ Surroundings::Drawn Surroundings::draw(Vec2 random) const {
     return {direction, density_in(cell, probability), at};
 }
 
+Surroundings::Cell Surroundings::cell_at(const Vec2& place) const {
+    const uint32_t rows = 1u << environment_.distribution.depth;
+    const Vec2 at = place * Vec2(2 * rows, rows);
+    return {std::min(uint32_t(int(at.x)), 2 * rows - 1), std::min(uint32_t(int(at.y)), rows - 1)};
+}
+
+/// The quad that a cell is in.
+const glm::vec4& Surroundings::leaf(const Cell& cell) const {
+    const uint32_t depth = environment_.distribution.depth, rows = 1u << depth, half = cell.column >> depth;
+    const uint32_t code = (half << 2 * (depth - 1)) +
+                          EnvironmentDistribution::morton((cell.column & (rows - 1)) >> 1, cell.row >> 1);
+    return leaves_[code / 4].quads[code & 3];
+}
+
 /// All directions of a cell are alike.
 real Surroundings::density_at(const Vec2& place) const {
-    const EnvironmentDistribution& tree = environment_.distribution;
-    const uint32_t rows = 1u << tree.depth;
-    const Vec2 at = place * Vec2(2 * rows, rows);
-    const Cell cell{std::min(uint32_t(int(at.x)), 2 * rows - 1), std::min(uint32_t(int(at.y)), rows - 1)};
-    const uint32_t half = cell.column / rows;
-    const uint32_t code = (half << 2 * (tree.depth - 1)) + EnvironmentDistribution::morton(cell.column % rows >> 1, cell.row >> 1);
-    const glm::vec4& quad = tree.quads[EnvironmentDistribution::first(tree.depth) + code];
-    return density_in(cell, quad[int((cell.column & 1) + 2 * (cell.row & 1))]);
+    const Cell cell = cell_at(place);
+    return density_in(cell, leaf(cell)[int((cell.column & 1) + 2 * (cell.row & 1))]);
+}
+
+void Surroundings::prefetch(const Vec2& place, bool with_density) const {
+    if (is_reference) return;
+    const int width = int(environment_.width), last = int(environment_.height) - 1;
+    const int x = std::clamp(int(place.x * width - 0.5), 0, width - 1), y = int(place.y * (last + 1) - 0.5);
+    const glm::vec4* const texels = environment_.texels.data() + x;
+    __builtin_prefetch(texels + size_t(std::clamp(y, 0, last)) * size_t(width));
+    __builtin_prefetch(texels + size_t(std::clamp(y + 1, 0, last)) * size_t(width));
+    if (with_density) __builtin_prefetch(&leaf(cell_at(place)));
 }
 
 }  // namespace peelray::inline PRECISION

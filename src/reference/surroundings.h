@@ -20,6 +20,9 @@ class Surroundings {
     static Vec2 place(const Vec3& direction);
     /// Radiance from a place without the sun's disc; `blur` in [0, 1]: a surface's roughness.
     Vec3 radiance_at(const Vec2& place, real blur) const;
+    /// Has fetched what radiance_at() without blur, and density_at() if `with_density`, will read: it is spread over
+    /// megabytes, and what is computed until then takes as long as to fetch it.
+    void prefetch(const Vec2& place, bool with_density) const;
     Vec3 radiance(const Vec3& direction, real blur) const { return radiance_at(place(direction), blur); }
     /// The blur of light from a cone that widens by `spread` per world unit; 0 where the levels are no means.
     real blur_of(real spread) const;
@@ -73,7 +76,13 @@ class Surroundings {
     };
     Vec3 filtered_level(const Vec3& direction, uint32_t number) const;
     Vec3 picture(const Vec2& uv, const Level& level) const;
+    Cell cell_at(const Vec2& place) const;
+    const glm::vec4& leaf(const Cell& cell) const;
     real density_in(const Cell& cell, real probability) const { return probability / cell_sizes_[cell.row]; }
+    /// Four leaves of the distribution's trees that are next to each other: what is above them is their sums.
+    struct alignas(64) Leaves {
+        glm::vec4 quads[4];
+    };
     Entry entry_for(uint32_t column, uint32_t row) const;
 
     /// Squares a side that random numbers are divided into. The reference always begins at the root.
@@ -82,6 +91,7 @@ class Surroundings {
     std::vector<Level> levels_;
     std::vector<real> cosines_, cell_sizes_;  ///< of the distribution's rows: of their upper edges, in steradians
     std::vector<Entry> entries_;
+    std::vector<Leaves> leaves_;
 };
 
 }  // namespace peelray::inline PRECISION
