@@ -127,7 +127,13 @@ Vec3 Shader::environment_light(const Lit& at) {
     if (share == Vec3(0)) return share;
     const Vec3 light = share * context_.surroundings.radiance_at(drawn.place, 0);
     if (light == Vec3(0)) return light;
-    return light * arriving(at, start_to(at, drawn.direction), drawn.direction, endless);
+    // What the camera sees itself would get noisy: dark surfaces by a tenth, all others by nothing.
+    const bool for_certain = at.path.level == 0;
+    const real kept = for_certain ? 1
+                                  : roulette(largest(light * at.path.weight) / context_.surroundings.usual(), at.path,
+                                             RANDOM_ENVIRONMENT_ROULETTE);
+    if (kept == 0) return Vec3(0);
+    return light / kept * arriving(at, start_to(at, drawn.direction), drawn.direction, endless);
 }
 
 /// What light other surfaces send to this one to be scattered: one ray stands for all of it.
