@@ -29,9 +29,9 @@ Albedos::Grays integrate(real ior, real roughness, real cosine) {
         const real across = std::sqrt(1 - up2), of_ring = masked * 2 * t / (cosine * up * rings * sectors);
         for (size_t k = 0; k < sectors; k++) {
             const real v_h = sine * across * around[k] + cosine * up, n_l = 2 * v_h * up - cosine;
-            const real share =
-                v_h > 0 && n_l > 0 ? of_ring * v_h * optics::ggx_masking(std::abs(n_l), alpha) : 0;
-            const real facing = std::clamp(v_h, 0.0, 1.0), x = 1 - facing, far = square(square(x)) * x;
+            const real share = v_h > 0 && n_l > 0 ? of_ring * v_h * optics::ggx_masking(std::abs(n_l), alpha) : 0;
+            // Above 0, where an index of 1 would leave nothing over nothing.
+            const real facing = std::clamp(v_h, 1e-30, 1.0), x = 1 - facing, far = square(square(x)) * x;
             // No total reflection on the way in.
             const real inside = std::sqrt(std::max(0.0, 1 - (1 - facing * facing) / (ior * ior)));
             const real s = (facing - ior * inside) / (facing + ior * inside),

@@ -64,14 +64,13 @@ Vec3 Shader::mirrored_from(const Lit& at, const Vec3& direction, real drawn_dens
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
         const real traced = !followed ? 0 : m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
-        sum = specular(s, at.path, lobe, density, fresnel, at.seen.n_v, direction) * at.seen.sheen * (1 - at.seen.coat) /
-              (drawn_density + traced * density);
+        sum = specular(s, at.path, lobe, density, fresnel, at.seen.n_v, direction) * at.seen.sheen *
+              (1 - at.seen.coat) / (drawn_density + traced * density);
     }
     if (m.clearcoat == 0) return sum;
     const Lobe coat = coat_lobe(s);
     const real density = coat.density(view, direction), traced = followed ? traced_part(m.coat_roughness, 0) : 0;
-    return sum +
-           coat_reflectance(m, v_h) * density * coat.masking(direction) / (drawn_density + traced * density);
+    return sum + coat_reflectance(m, v_h) * density * coat.masking(direction) / (drawn_density + traced * density);
 }
 
 /// Is there a lobe that mirrors light from directions that are drawn? A mirror has one direction.
@@ -150,8 +149,7 @@ Shader::Branch Shader::diffuse_branch(const Lit& at) const {
     branch.media = back ? at.behind : at.path.media;
     branch.cone = {at.path.cone.width, 1};  // blurred as it is, it may show textures as coarse as that
     branch.density = -1;
-    branch.traced = largest(branch.weight * at.path.weight) >= LEAST_WEIGHT &&
-                    at.path.level < context_.last_level;
+    branch.traced = largest(branch.weight * at.path.weight) >= LEAST_WEIGHT && at.path.level < context_.last_level;
     return branch;
 }
 

@@ -61,8 +61,8 @@ struct Candidate {
     const RTCRay& ray;
     const RTCHit& hit;
     bool shows() const {
-        return ray.tfar > query.tmin && query.shows(hit.primID, hit.u, hit.v, {ray.dir_x, ray.dir_y, ray.dir_z},
-                                                    {hit.Ng_x, hit.Ng_y, hit.Ng_z});
+        return ray.tfar > query.tmin &&
+               query.shows(hit.primID, hit.u, hit.v, {ray.dir_x, ray.dir_y, ray.dir_z}, {hit.Ng_x, hit.Ng_y, hit.Ng_z});
     }
     bool counts() const { return hit.primID != query.skip && shows(); }
     Hit found() const { return {ray.tfar, hit.primID, hit.u, hit.v}; }
@@ -86,9 +86,8 @@ void filter_nearest_of_each(const RTCFilterFunctionNArguments* args) {
                              RTCRayN_dir_z(args->ray, n, i)),
             normal(RTCHitN_Ng_x(args->hit, n, i), RTCHitN_Ng_y(args->hit, n, i), RTCHitN_Ng_z(args->hit, n, i));
         Query::Nearest& nearest = query.rays[RTCRayN_id(args->ray, n, i)];
-        const bool counts =
-            t > query.tmin && id != query.skip &&
-            query.shows(id, RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i), direction, normal);
+        const bool counts = t > query.tmin && id != query.skip &&
+                            query.shows(id, RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i), direction, normal);
         if (nearest.is_before(t, id) || !counts)
             args->valid[i] = 0;
         else

@@ -67,8 +67,8 @@ class MediaWalk {
               const HitsAlong* crossed = nullptr)
         : triangles_(triangles), surfaces_(surfaces), ranks_(ranks), crossed_(crossed) {}
 
-    /// `skip`: a triangle that does not count; `to_light`: see Intersections::nearest(); `first`: the nearest hit, if it
-    /// is known.
+    /// `skip`: a triangle that does not count; `to_light`: see Intersections::nearest(); `first`: the nearest hit, if
+    /// it is known.
     Meeting next(Ray ray, uint32_t skip, const Media& media, bool to_light = false, const Hit* first = nullptr) const;
 
   private:

@@ -90,8 +90,8 @@ class Shader {
         Channel channel = Channel::all;
         /// Straight from the camera?
         bool is_straight() const { return passed == level; }
-        bool guided = false;  ///< the denoiser's guides are looked for along it
-        real length = 0;      ///< of the path so far
+        bool guided = false;        ///< the denoiser's guides are looked for along it
+        real length = 0;            ///< of the path so far
         std::optional<Vec2> ahead;  ///< where the ray looks in the environment's map, if that is known
     };
 

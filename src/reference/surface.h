@@ -92,11 +92,11 @@ struct Face {
 /// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
 struct Surface : Face {
     Vec3 position;
-    Vec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
-    Vec3 coat_normal;   ///< of a clear coat
-    Vec3 along{0};      ///< of a surface with anisotropy: where the lobe is stretched, unit, in the normal's plane
-    Vec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
-    real error;         ///< bound on the position's rounding error, world units
+    Vec3 normal;          ///< interpolated and bent by the normal texture, unit, on the ray's side
+    Vec3 coat_normal;     ///< of a clear coat
+    Vec3 along{0};        ///< of a surface with anisotropy: where the lobe is stretched, unit, in the normal's plane
+    Vec3 shadow_start;    ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
+    real error;           ///< bound on the position's rounding error, world units
     Optics optics;        ///< the material here
     real mean_roughness;  ///< of the round lobe that masks the ray that came as much as the material's own
     real curvature;       ///< how much the normal turns per world unit; > 0: the ray meets a bulge

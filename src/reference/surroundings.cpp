@@ -58,8 +58,8 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
         const real height = 2 * std::sin(optics::pi * (row + 0.5) / rows) * std::sin(optics::pi / (2 * real(rows)));
         cell_sizes_.push_back(height * optics::pi / rows);
     }
-    const auto leaf = environment.distribution.quads.begin() +
-                      EnvironmentDistribution::first(environment.distribution.depth);
+    const auto leaf =
+        environment.distribution.quads.begin() + EnvironmentDistribution::first(environment.distribution.depth);
     leaves_.resize(size_t(environment.distribution.quads.end() - leaf) / 4);
     for (size_t i = 0; i < leaves_.size(); i++) std::copy_n(leaf + std::ptrdiff_t(4 * i), 4, leaves_[i].quads);
     for (uint32_t i = 0; i < entry_sides * entry_sides; i++)
@@ -228,8 +228,8 @@ Surroundings::Cell Surroundings::cell_at(const Vec2& place) const {
 /// The quad that a cell is in.
 const glm::vec4& Surroundings::leaf(const Cell& cell) const {
     const uint32_t depth = environment_.distribution.depth, rows = 1u << depth, half = cell.column >> depth;
-    const uint32_t code = (half << 2 * (depth - 1)) +
-                          EnvironmentDistribution::morton((cell.column & (rows - 1)) >> 1, cell.row >> 1);
+    const uint32_t code =
+        (half << 2 * (depth - 1)) + EnvironmentDistribution::morton((cell.column & (rows - 1)) >> 1, cell.row >> 1);
     return leaves_[code / 4].quads[code & 3];
 }
 
@@ -243,7 +243,8 @@ void Surroundings::prefetch(const Vec2& place, bool with_density) const {
     if (is_reference) return;
     const int width = int(environment_.width), last = int(environment_.height) - 1;
     const int x = std::clamp(int(place.x * width - 0.5), 0, width - 1), y = int(place.y * (last + 1) - 0.5);
-    const size_t upper = size_t(std::clamp(y, 0, last) * width + x), lower = size_t(std::clamp(y + 1, 0, last) * width + x);
+    const size_t upper = size_t(std::clamp(y, 0, last) * width + x),
+                 lower = size_t(std::clamp(y + 1, 0, last) * width + x);
     const auto fetch = [&](const auto& texels) {
         __builtin_prefetch(&texels[upper]);
         __builtin_prefetch(&texels[lower]);

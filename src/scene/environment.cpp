@@ -34,8 +34,8 @@ void add_levels(Environment& environment) {
     }
 }
 
-/// Directions to the texels' middles, as environment_direction() has them, whose sines and cosines are those of rows and
-/// columns: for each texel they took half of what it takes to read a picture.
+/// Directions to the texels' middles, as environment_direction() has them, whose sines and cosines are those of rows
+/// and columns: for each texel they took half of what it takes to read a picture.
 class TexelDirections {
   public:
     TexelDirections(uint32_t width, uint32_t height) : columns_(width), rows_(height) {

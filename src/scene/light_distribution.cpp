@@ -36,9 +36,7 @@ struct Taps {
 /// is linear on either side of a texel's centre exactly (the trapezoidal rule).
 Taps taps_of(uint32_t cell, uint32_t cells, uint32_t texels) {
     const uint32_t covered = std::max(1u, (texels + cells - 1) / cells);
-    const auto place = [&](uint32_t i) {
-        return (cell + (i / 3 + 0.5 * (i % 3)) / covered) * texels / cells - 0.5;
-    };
+    const auto place = [&](uint32_t i) { return (cell + (i / 3 + 0.5 * (i % 3)) / covered) * texels / cells - 0.5; };
     Taps taps{int(std::floor(place(0))), {}};
     for (uint32_t i = 0; i < 3 * covered; i++) {
         const double at = place(i), low = std::floor(at), weight = i % 3 == 1 ? 2 : 1;
