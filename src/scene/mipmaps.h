@@ -20,7 +20,7 @@ class Mipmaps {
   public:
     explicit Mipmaps(const Scene& scene);
 
-    /// None of a texture that is not filtered by levels.
+    /// None of a texture that is not filtered by levels. Throws std::out_of_range if no material uses it so.
     const std::vector<Texture>& of(int texture, bool is_data) const;
 
   private:
@@ -29,7 +29,7 @@ class Mipmaps {
         std::vector<Texture> levels;
     };
     const Scene& scene_;
-    std::unique_ptr<Made[]> made_;  ///< per texture of colours and of data
+    std::vector<std::unique_ptr<Made>> made_;  ///< per texture, of colours and of data; null: no material uses it so
 };
 
 /// Which levels of a texture serve a footprint of so many texels, and how far it is from the first to the second.
