@@ -1,7 +1,6 @@
 #include "reference/surroundings.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,24 +12,6 @@
 
 namespace peelray::inline PRECISION {
 namespace {
-
-std::optional<uint32_t> packed(const glm::vec3& color) {
-    const float most = std::max({color.x, color.y, color.z});
-    if (most == 0 && color == glm::vec3(0)) return 0;
-    int exponent = 0;
-    std::frexp(most, &exponent);
-    const int biased = exponent - 8 + 127;
-    if (!(most > 0) || biased < 1 || biased > 254) return {};
-    const glm::vec3 scaled = color * std::exp2(float(8 - exponent));
-    const glm::ivec3 bits(scaled);
-    if (glm::vec3(bits) != scaled || glm::any(glm::lessThan(bits, glm::ivec3(0)))) return {};
-    return uint32_t(bits.x | bits.y << 8 | bits.z << 16) | uint32_t(biased) << 24;
-}
-
-Vec3 unpacked(uint32_t all) {
-    return Vec3(int(all & 255), int(all >> 8 & 255), int(all >> 16 & 255)) *
-           real(std::bit_cast<float>(all >> 24 << 23));
-}
 
 /// Takes the first of two ways with the chance `first`; what is left of the random number is one again. Which way is
 /// taken cannot be foretold: no branch is to wait for it.
@@ -49,7 +30,6 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
         level = {level.first + size_t(level.width) * level.height, std::max(level.width / 2, 1u),
                  std::max(level.height / 2, 1u)};
     }
-    if (!is_reference) pack();
     if (environment.distribution.quads.empty()) return;
     const uint32_t rows = 1u << environment.distribution.depth;
     for (uint32_t row = 0; row <= rows; row++) {
@@ -64,20 +44,6 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
     for (size_t i = 0; i < leaves_.size(); i++) std::copy_n(leaf + std::ptrdiff_t(4 * i), 4, leaves_[i].quads);
     for (uint32_t i = 0; i < entry_sides * entry_sides; i++)
         entries_.push_back(entry_for(i % entry_sides, i / entry_sides));
-}
-
-/// Files of common exponents hold nothing else. Looking up 2 megabytes at random takes a fifth of what 8 take.
-void Surroundings::pack() {
-    const size_t count = size_t(environment_.width) * environment_.height;
-    packed_.resize(count);
-    for (size_t i = 0; i < count; i++) {
-        const auto texel = packed(glm::vec3(environment_.texels[i]));
-        if (!texel) {
-            packed_.clear();
-            return;
-        }
-        packed_[i] = *texel;
-    }
 }
 
 /// Down the trees as long as all of a square goes the same way.
@@ -138,8 +104,6 @@ Vec2 Surroundings::place(const Vec3& d) {
 
 /// Between the texels of a picture.
 Vec3 Surroundings::picture(const Vec2& uv, const Level& level) const {
-    if (level.first == 0 && !packed_.empty())
-        return bilinear_around(uv, level.width, level.height, [&](size_t i) { return unpacked(packed_[i]); });
     const glm::vec4* const texels = environment_.texels.data() + level.first;
     return bilinear_around(uv, level.width, level.height, [&](size_t i) { return Vec3(texels[i]); });
 }
@@ -245,14 +209,8 @@ void Surroundings::prefetch(const Vec2& place, bool with_density) const {
     const int x = std::clamp(int(place.x * width - 0.5), 0, width - 1), y = int(place.y * (last + 1) - 0.5);
     const size_t upper = size_t(std::clamp(y, 0, last) * width + x),
                  lower = size_t(std::clamp(y + 1, 0, last) * width + x);
-    const auto fetch = [&](const auto& texels) {
-        __builtin_prefetch(&texels[upper]);
-        __builtin_prefetch(&texels[lower]);
-    };
-    if (packed_.empty())
-        fetch(environment_.texels);
-    else
-        fetch(packed_);
+    __builtin_prefetch(&environment_.texels[upper]);
+    __builtin_prefetch(&environment_.texels[lower]);
     if (with_density) __builtin_prefetch(&leaf(cell_at(place)));
 }
 

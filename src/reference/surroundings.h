@@ -83,16 +83,12 @@ class Surroundings {
     struct alignas(64) Leaves {
         glm::vec4 quads[4];
     };
-    void pack();
     Entry entry_for(uint32_t column, uint32_t row) const;
 
     /// Squares a side that random numbers are divided into. The reference always begins at the root.
     static constexpr uint32_t entry_sides = is_reference ? 1 : 64;
     const Environment& environment_;
     std::vector<Level> levels_;
-    /// The finest level's texels in 8 bits a channel with a common exponent, as that of a float, in the highest 8.
-    /// Empty if they are not exactly those.
-    std::vector<uint32_t> packed_;
     std::vector<real> cosines_, cell_sizes_;  ///< of the distribution's rows: of their upper edges, in steradians
     std::vector<Entry> entries_;
     std::vector<Leaves> leaves_;
