@@ -95,7 +95,8 @@
 #define RANDOM_EMITTER_POINT 7
 #define RANDOM_LAMP_CHOICE 8
 #define RANDOM_EMITTER_ROULETTE 11
-#define RANDOM_ROULETTE 12  // and which branch; both of the CPU tracer
+#define RANDOM_ROULETTE 12  // and which branch; all kinds of roulette are of the CPU tracer
+#define RANDOM_ENVIRONMENT_ROULETTE 15
 #define RANDOM_LAMP 16  // and the lamp's index
 
 // Of more lamps with a place in the scene than this, sampled hits draw one: of so many that are tried, chosen by their

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "base/once.h"
 #include "reference/real.h"
 #include "reference/surface.h"
 
@@ -16,6 +16,10 @@ namespace peelray::inline PRECISION {
 class Albedos {
   public:
     using Means = AlbedoMeans;
+    /// Of a perfect mirror's microfacets (AlbedoMeans) and of a dielectric's.
+    struct Grays {
+        real dielectric = 0, normal = 0, grazing = 0;
+    };
 
     Albedos(const Scene& scene, const Surfaces& surfaces);
 
@@ -29,27 +33,33 @@ class Albedos {
   private:
     static constexpr size_t steps = 64;  ///< in the square root of the cosine
     struct Table {
-        std::once_flag made;
-        std::array<Means, steps + 1> entries;
+        Once once;
+        std::array<Grays, steps + 1> entries;
     };
 
     /// Of white sheens of one roughness.
     struct SheenTable {
         static constexpr size_t steps = 256;  ///< in the square root of the cosine
-        std::once_flag made;
+        Once once;
         std::array<real, steps + 1> entries;
     };
     static real look_up(SheenTable& table, real alpha, real cosine);
 
+    struct Place;
     /// Materials whose roughness a texture changes, or whose lobes are stretched where there are tangents, have a table
     /// for each of these, in the square root of the roughness; the others one, for their own.
     static constexpr size_t roughnesses = 65;
-    Means look_up(Table& table, const Optics& constants, real roughness, real cosine) const;
+    static Grays look_up(Table& table, real ior, real roughness, const Place& at);
     /// Between those of the roughnesses around; `first`: of as many tables.
-    Means between(Table* first, const Optics& constants, real roughness, real cosine) const;
+    static Grays between(Table* first, real ior, real roughness, const Place& at);
 
+    /// Of a material's lobe; those of the same index, and of the same roughness where it does not vary, share theirs.
+    struct Lobes {
+        size_t first;
+        bool vary;
+    };
     const Surfaces& surfaces_;
-    std::vector<size_t> first_table_;  ///< per material, and the end
+    std::vector<Lobes> lobes_;  ///< per material
     std::unique_ptr<Table[]> tables_;
     std::unique_ptr<Table[]> coats_;  ///< of all coats
     /// Per material, or where a texture changes the roughness, equally spaced from the least on.

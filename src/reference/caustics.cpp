@@ -94,7 +94,7 @@ std::optional<RestingPhoton> Shader::fly(const SentPhoton& sent, uint32_t seed, 
     path.direction = sent.direction;
     path.seed = seed;
     Vec3 flux = sent.flux;
-    const uint32_t last = bounce_levels(context_.settings, context_.has_blended);
+    const uint32_t last = context_.bounce_levels;
     for (uint32_t specular = 0; path.level <= last && flux != Vec3(0); path.level++) {
         const Meeting meeting = hit(path);
         if (!meeting.hit.hit()) break;

@@ -52,7 +52,7 @@ Vec3 Shader::emitter_light(const Lit& at) {
     const real density = emitter_density(emitter.id, real(emitter.probability), direction, distance);
     if (density == 0) return Vec3(0);
     const bool followed = context_.settings.reflection && !is_last(at.path, false);
-    const Vec3 share = scattered_from(at, direction) / density + mirrored_from(at, {direction, density}, followed);
+    const Vec3 share = scattered_from(at, direction) / density + mirrored_from(at, direction, density, followed);
     if (share == Vec3(0) || !context_.triangles.is_present(emitter.id, u, v)) return Vec3(0);
     const Vec3 most = share * at.path.weight * context_.surfaces.optics_of_triangle(emitter.id).emissive;
     const real kept = roulette(largest(most) / context_.surroundings.usual(), at.path, RANDOM_EMITTER_ROULETTE);

@@ -12,9 +12,9 @@ using namespace optics;
 
 /// What of the environment's light comes along a ray; the rest its hit has found by drawing directions to the
 /// environment (Veach and Guibas, Optimally Combining Sampling Techniques, 1995: the balance heuristic).
-real Shader::environment_share(const Vec3& direction, real density) const {
+real Shader::environment_share(const Vec2& place, real density) const {
     if (density == 0 || context_.settings.env_mode == EnvironmentMode::open) return 1;
-    return density < 0 ? 0 : density / (density + context_.surroundings.density(direction));
+    return density < 0 ? 0 : density / (density + context_.surroundings.density_at(place));
 }
 
 /// A ray that brings all of the light sees its mean over the cone: a sun's disc in a curved mirror would be noise. What
@@ -50,27 +50,27 @@ Vec3 Shader::scattered_from(const Lit& at, const Vec3& direction) {
 
 /// Of light from a drawn direction, what the lobes mirror over the density of such directions: the light's, and that of
 /// the lobe's own samples, which bring the rest if they are followed.
-Vec3 Shader::mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const {
+Vec3 Shader::mirrored_from(const Lit& at, const Vec3& direction, real drawn_density, bool followed) const {
     const Surface& s = at.surface;
     const Optics& m = s.optics;
-    const bool through = m.behind > 0 && glm::dot(s.normal, drawn.direction) < 0;
+    const bool through = m.behind > 0 && glm::dot(s.normal, direction) < 0;
     if (!context_.sampled() || m.shares_branch() || through) return Vec3(0);
     const Vec3 view = -at.path.direction;
-    const real v_h = std::clamp(glm::dot(view, glm::normalize(view + drawn.direction)), 0.0, 1.0);
+    const real v_h = std::clamp(glm::dot(view, glm::normalize(view + direction)), 0.0, 1.0);
     const bool leaving = m.leaves(s.front);
     Vec3 sum(0);
-    if (const real density = lobe_of(s).density(view, drawn.direction); density > 0) {
+    const Lobe lobe = lobe_of(s);
+    if (const real density = lobe.density(view, direction); density > 0) {
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
         const real traced = !followed ? 0 : m.transmits() ? 1 : traced_part(m.lobe_roughness(), m.metallic);
-        sum = specular(s, at.path, fresnel, at.seen.n_v, drawn.direction) * at.seen.sheen * (1 - at.seen.coat) /
-              (drawn.density + traced * density);
+        sum = specular(s, at.path, lobe, density, fresnel, at.seen.n_v, direction) * at.seen.sheen *
+              (1 - at.seen.coat) / (drawn_density + traced * density);
     }
     if (m.clearcoat == 0) return sum;
     const Lobe coat = coat_lobe(s);
-    const real density = coat.density(view, drawn.direction), traced = followed ? traced_part(m.coat_roughness, 0) : 0;
-    return sum +
-           coat_reflectance(m, v_h) * density * coat.masking(drawn.direction) / (drawn.density + traced * density);
+    const real density = coat.density(view, direction), traced = followed ? traced_part(m.coat_roughness, 0) : 0;
+    return sum + coat_reflectance(m, v_h) * density * coat.masking(direction) / (drawn_density + traced * density);
 }
 
 /// Is there a lobe that mirrors light from directions that are drawn? A mirror has one direction.
@@ -112,18 +112,27 @@ Vec3 Shader::environment_light(const Lit& at) {
     Surroundings::Drawn drawn{};
     if (bright) {
         drawn = context_.surroundings.draw(u);
+        context_.surroundings.prefetch(drawn.place, false);
     } else {
         drawn.direction = draw_scattered(at, u);
-        drawn.density = context_.surroundings.density(drawn.direction);
+        drawn.place = Surroundings::place(drawn.direction);
+        context_.surroundings.prefetch(drawn.place, false);
+        drawn.density = context_.surroundings.density_at(drawn.place);
     }
     const real mixed = by_brightness * drawn.density + (1 - by_brightness) * scattered_density(at, drawn.direction);
     Vec3 share(0);
     if (scattering && mixed > 0) share = scattered_from(at, drawn.direction) / mixed;
-    if (bright) share += mirrored_from(at, drawn, true) / by_brightness;
+    if (bright) share += mirrored_from(at, drawn.direction, drawn.density, true) / by_brightness;
     if (share == Vec3(0)) return share;
-    const Vec3 light = share * context_.surroundings.radiance(drawn.direction, 0);
+    const Vec3 light = share * context_.surroundings.radiance_at(drawn.place, 0);
     if (light == Vec3(0)) return light;
-    return light * arriving(at, start_to(at, drawn.direction), drawn.direction, endless);
+    // What the camera sees itself would get noisy: dark surfaces by a tenth, all others by nothing.
+    const bool for_certain = at.path.level == 0;
+    const real kept = for_certain ? 1
+                                  : roulette(largest(light * at.path.weight) / context_.surroundings.usual(), at.path,
+                                             RANDOM_ENVIRONMENT_ROULETTE);
+    if (kept == 0) return Vec3(0);
+    return light / kept * arriving(at, start_to(at, drawn.direction), drawn.direction, endless);
 }
 
 /// What light other surfaces send to this one to be scattered: one ray stands for all of it.
@@ -140,8 +149,7 @@ Shader::Branch Shader::diffuse_branch(const Lit& at) const {
     branch.media = back ? at.behind : at.path.media;
     branch.cone = {at.path.cone.width, 1};  // blurred as it is, it may show textures as coarse as that
     branch.density = -1;
-    branch.traced = largest(branch.weight * at.path.weight) >= LEAST_WEIGHT &&
-                    at.path.level < last_level(context_.settings, context_.has_blended);
+    branch.traced = largest(branch.weight * at.path.weight) >= LEAST_WEIGHT && at.path.level < context_.last_level;
     return branch;
 }
 

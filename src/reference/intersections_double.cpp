@@ -22,8 +22,12 @@ Hit Intersections::nearest(const Ray& ray, uint32_t skip, bool to_light) const {
     return impl_->nearest(ray, skip, to_light).hit;
 }
 
-std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_light) const {
-    std::vector<Hit> hits;
+void Intersections::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
+    for (size_t i = 0; i < rays.size(); i++) hits[i] = nearest(rays[i], ~0u);
+}
+
+HitsAlong Intersections::along(const Ray& ray, uint32_t skip, bool to_light) const {
+    HitsAlong hits;
     const TriangleSet& set = impl_->triangles;
     const auto prepared = PreparedRay::make(ray, set);
     if (!prepared) return hits;
@@ -32,14 +36,14 @@ std::vector<Hit> Intersections::along(const Ray& ray, uint32_t skip, bool to_lig
         hit.triangle = set.ids[index];
         if (hit.triangle == skip || !prepared->intersect(set.corners[index], hit)) continue;
         const bool shown = !is_single(hit.triangle) || comes_from_front(set.corners[index], ray.direction) != to_light;
-        if (shown && is_present(hit.triangle, hit.u, hit.v)) hits.push_back(hit);
+        if (shown && is_present(hit.triangle, hit.u, hit.v)) hits.add(hit);
     }
-    put_in_order(hits);
+    hits.put_in_order();
     return hits;
 }
 
 /// The reference looks at each surface.
-Intersections::Way Intersections::way(const Ray&, uint32_t) const {
+Intersections::Way Intersections::way(const Ray&, uint32_t, HitsAlong&) const {
     return Way::unsure;
 }
 

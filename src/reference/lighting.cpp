@@ -28,27 +28,24 @@ Shader::Seen Shader::seen(const Surface& s, const Path& path) const {
     seen.sheen = below_sheen(s, seen.n_v);
     if (m.metallic == 1 || m.transmission == 1) return seen;
     // The share that scatter() gives to the reflection.
-    Vec3 mirrored = m.wall_reflectance(seen.n_v, m.leaves(s.front), Channel::green);
-    if (m.lobe_roughness() >= MIRROR_ROUGHNESS) {
-        if (!m.transmits())
-            mirrored = mean_reflectance(s, seen.n_v).dielectric;
-        else if (!compensates(m))
-            mirrored *= context_.albedos.at(s, seen.n_v).masking();
-    }
+    const bool rough = m.lobe_roughness() >= MIRROR_ROUGHNESS;
+    Vec3 mirrored = rough && !m.transmits() ? mean_reflectance(s, seen.n_v).dielectric
+                                            : m.wall_reflectance(seen.n_v, m.leaves(s.front), Channel::green);
+    if (rough && m.transmits() && !compensates(m)) mirrored *= context_.albedos.at(s, seen.n_v).masking();
     seen.scattered = 1 - largest(mirrored);
     return seen;
 }
 
-/// The lobe's share of a lamp's light, times the cosine; `fresnel`: what its microfacet reflects.
-Vec3 Shader::specular(const Surface& s, const Path& path, const Parts& fresnel, real n_v, const Vec3& to_light) const {
+/// The lobe's share of a lamp's light, times the cosine; `density`: of the lobe towards it, `fresnel`: what its
+/// microfacet reflects.
+Vec3 Shader::specular(const Surface& s, const Path& path, const Lobe& lobe, real density, const Parts& fresnel,
+                      real n_v, const Vec3& to_light) const {
     const Optics& m = s.optics;
-    const Lobe lobe = lobe_of(s);
-    const Vec3 half = glm::normalize(to_light - path.direction);
-    const real shape = highlight(lobe, -path.direction, to_light);
+    const real kept = lobe.masking(to_light), shape = density * kept;
     const bool sampled = context_.sampled();
     const Parts gained = fresnel * compensation(s, n_v);
     if (!m.transmits() || !compensates(m) || !sampled) return gained.of(m) * shape;
-    const real kept = lobe.masking(to_light);
+    const Vec3 half = glm::normalize(to_light - path.direction);
     const auto onward = m.thin ? std::optional(to_light - 2 * glm::dot(to_light, s.normal) * s.normal)
                                : refract_ray(path.direction, half, m.leaves(s.front) ? 1 / m.ior : m.ior);
     const Shares glass = rough_glass(fresnel.dielectric, kept, onward ? lobe.masking(-*onward) : 0);
@@ -70,7 +67,10 @@ Vec3 Shader::reflectance(const Surface& s, const Path& path, const Seen& seen, c
         const Parts fresnel{m.wall_reflectance(v_h, leaving, Channel::green),
                             m.metal_reflectance(v_h, leaving, Channel::green)};
         share = diffuse * (1 - m.behind) * (1 - largest(fresnel.dielectric)) * m.base_color * n_l;
-        if (!photons_bring_lobe(m, path)) share += specular(s, path, fresnel, seen.n_v, to_light);
+        if (!photons_bring_lobe(m, path)) {
+            const Lobe lobe = lobe_of(s);
+            share += specular(s, path, lobe, lobe.density(view, to_light), fresnel, seen.n_v, to_light);
+        }
         if (largest(m.sheen) > 0) {
             share *= std::min(seen.sheen, below_sheen(s, n_l));
             share += m.sheen * sheen::lobe(sheen::alpha_of(m.sheen_roughness), glm::dot(s.normal, half),
@@ -254,10 +254,12 @@ Vec3 Shader::visibility(const Vec3& start, const Vec3& direction, real distance,
     Vec3 share(1);
     uint32_t skip = triangle;
     real from = 0;
-    const Intersections::Way way = context_.triangles.way({start, 0, direction, distance}, skip);
+    HitsAlong crossed;
+    const Intersections::Way way = context_.triangles.way({start, 0, direction, distance}, skip, crossed);
     if (way != Intersections::Way::unsure) return Vec3(way == Intersections::Way::free);
+    const MediaWalk walk = crossed.hits().empty() ? this->walk() : this->walk(&crossed);
     for (int layer = 0; layer < SHADOW_LAYERS; layer++) {
-        Meeting meeting = walk().next({start, from, direction, distance}, skip, media, true);
+        Meeting meeting = walk.next({start, from, direction, distance}, skip, media, true);
         const Hit& hit = meeting.hit;
         share *= meeting.passed;
         if (!hit.hit()) return share;

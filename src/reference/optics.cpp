@@ -52,7 +52,7 @@ real ggx_masking(real cosine, real alpha) {
 Vec3 sample_ggx(const Vec3& view, const Vec2& alpha, const Vec2& random) {
     // The hemisphere's visible disc is warped as the stretched view sees it, then unstretched.
     const Vec3 v = glm::normalize(Vec3(alpha.x * view.x, alpha.y * view.y, view.z));
-    const real flat = std::hypot(v.x, v.y);
+    const real flat = is_reference ? std::hypot(v.x, v.y) : std::sqrt(v.x * v.x + v.y * v.y);
     const Vec3 t1 = flat > 0 ? Vec3(-v.y, v.x, 0) / flat : Vec3(1, 0, 0), t2 = glm::cross(v, t1);
     const real r = std::sqrt(random.x), phi = 2 * pi * random.y, s = (1 + v.z) / 2;
     const real p1 = r * std::cos(phi);

@@ -1,6 +1,7 @@
 #include "reference/picture_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <chrono>
@@ -33,17 +34,25 @@ struct Tiles {
     uint32_t count() const { return columns * rows; }
 };
 
-Shader::Path camera_path(const View& view, const PictureSettings& s, uint32_t x, uint32_t y, const glm::vec2& sample) {
-    const Vec2 p = Vec2(x, y) + Vec2(sample);
-    const Vec3 offset = Vec3(view.right) * (2 * p.x / s.width - 1) + Vec3(view.up) * (1 - 2 * p.y / s.height);
+/// What all rays of a pixel have in common.
+Shader::Path pixel_path(const View& view, const RenderContext& context, uint32_t x, uint32_t y) {
+    const PictureSettings& s = context.settings;
     Shader::Path path;
-    path.origin = Vec3(view.eye) + (view.orthographic ? offset : Vec3(0));
-    path.direction = glm::normalize(Vec3(view.forward) + (view.orthographic ? Vec3(0) : offset));
     // A pixel's share of the picture, or a sample's of the pixel.
     const real across = 2 * glm::length(Vec3(view.up)) / s.height / std::sqrt(real(s.spp));
     path.cone = view.orthographic ? Cone{across, 0} : Cone{0, across};
     path.seed = path_seed(x, y);
+    path.media = context.start;
+    path.guided = is_denoised(s);
     return path;
+}
+
+/// Through a sample's place in a pixel.
+Ray camera_ray(const View& view, const PictureSettings& s, uint32_t x, uint32_t y, const glm::vec2& sample) {
+    const Vec2 p = Vec2(x, y) + Vec2(sample);
+    const Vec3 offset = Vec3(view.right) * (2 * p.x / s.width - 1) + Vec3(view.up) * (1 - 2 * p.y / s.height);
+    return {Vec3(view.eye) + (view.orthographic ? offset : Vec3(0)), 0,
+            glm::normalize(Vec3(view.forward) + (view.orthographic ? Vec3(0) : offset)), endless};
 }
 
 /// What the camera sees through, now and, for Aovs::motion and Denoise::temporal, at the moment before.
@@ -173,12 +182,22 @@ void PictureTracer::pixel(const Work& work, const RenderContext& context, const 
     Picture& picture = work.picture;
     const size_t at = size_t(y) * s.width + x;
     const uint32_t sample_bits = PixelSample::bits_for(s.spp);
+    Shader::Path path = pixel_path(views.now, context, x, y);
+    Shader shader(context, {0, sample_bits, s.seed});
+    std::array<Ray, Intersections::together> cameras;
+    std::array<Hit, Intersections::together> hits;
     for (uint32_t sample = work.first_sample; sample < work.end_sample; sample++) {
-        Shader::Path path = camera_path(views.now, s, x, y, sample_position(sample));
-        path.media = context.start;
-        path.guided = is_denoised(s);
-        Shader shader(context, {sample, sample_bits, s.seed});
-        const Meeting meeting = shader.hit(path);
+        const size_t of_packet = (sample - work.first_sample) % cameras.size();
+        if (of_packet == 0) {
+            const size_t count = std::min<size_t>(cameras.size(), work.end_sample - sample);
+            for (size_t i = 0; i < count; i++)
+                cameras[i] = camera_ray(views.now, s, x, y, sample_position(sample + uint32_t(i)));
+            triangles.nearest(std::span(cameras).first(count), std::span(hits).first(count));
+        }
+        path.origin = cameras[of_packet].origin;
+        path.direction = cameras[of_packet].direction;
+        shader.begin({sample, sample_bits, s.seed});
+        const Meeting meeting = shader.hit(path, &hits[of_packet]);
         const Hit& hit = meeting.hit;
         const Vec3 radiance = shader.radiance(path, meeting);
         const real alpha =
@@ -186,12 +205,12 @@ void PictureTracer::pixel(const Work& work, const RenderContext& context, const 
         work.sums.add(at, sample, Vec4(radiance, alpha), shader.unlit());
         if (path.guided) work.sums.add_guide(at, sample, shader.guide(), shader.guide_motion());
         if (s.aovs && sample == 0 && hit.hit()) {
-            const Hit first = triangles.nearest({path.origin, 0, path.direction, endless}, Shader::none);
+            const Hit& first = hits[of_packet];
             aovs(picture, at, path, first, context.box);
             if (s.motion) picture.aovs.motion[at] = views.before->motion({first.triangle, first.u, first.v});
         }
-        rays += shader.rays();
     }
+    rays += shader.rays();
 }
 
 /// One thread's share: tiles until there are none left.
@@ -292,6 +311,8 @@ Picture PictureTracer::render(const PictureSettings& settings, const PictureWatc
                                 box,
                                 media_around(settings.camera),
                                 has_blended,
+                                bounce_levels(settings, has_blended),
+                                last_level(settings, has_blended),
                                 is_temporal(settings) ? &*seen.before : nullptr};
     PhotonPlan plan;
     if (settings.caustics > 0) plan = plan_photons(scene, geometry, context.lights, settings);

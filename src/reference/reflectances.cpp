@@ -60,8 +60,8 @@ Shader::Parts Shader::mean_reflectance(const Surface& s, real n_v) const {
     const Optics& m = s.optics;
     const Albedos::Means means = context_.albedos.at(s, n_v);
     Parts mean{means.dielectric, means.metal(m.base_color)};
-    const real kept = means.masking(), cosine = means.cosine();
     if (m.film > 0) {
+        const real kept = means.masking(), cosine = means.cosine();
         mean.dielectric = glm::mix(mean.dielectric, m.film_on_dielectric(cosine, false) * kept, m.film);
         if (m.metallic > 0) mean.metal = glm::mix(mean.metal, m.film_on_metal(cosine, false) * kept, m.film);
     }

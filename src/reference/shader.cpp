@@ -18,12 +18,14 @@ constexpr uint32_t LEAST_FOR_ROULETTE = 32;
 
 }  // namespace
 
-Meeting Shader::hit(const Path& path) const {
-    return walk().next({path.origin, 0, path.direction, endless}, path.skip, path.media);
+Meeting Shader::hit(const Path& path, const Hit* first) const {
+    return walk().next({path.origin, 0, path.direction, endless}, path.skip, path.media, false, first);
 }
 
 Vec3 Shader::transmittance(uint32_t medium, real distance) const {
-    return medium == Media::air ? Vec3(1) : glm::exp(-context_.surfaces.optics(medium).absorption * distance);
+    if (medium == Media::air) return Vec3(1);
+    const Vec3& absorption = context_.surfaces.optics(medium).absorption;
+    return absorption == Vec3(0) ? Vec3(1) : glm::exp(-absorption * distance);
 }
 
 Vec3 Shader::radiance(const Path& arriving, const Meeting& meeting) {
@@ -85,11 +87,12 @@ Vec3 Shader::scattered_light(const Surface& s, const Path& path, const Meeting& 
 Vec3 Shader::untraced(const Branch& branch, const Path& path) const {
     if (branch.passes && path.is_straight() && context_.settings.backdrop.kind != Backdrop::Kind::environment)
         return branch.weight * backdrop(branch.direction);
-    const Vec3 weight = branch.weight * environment_share(branch.direction, branch.density);
+    const Vec2 place = Surroundings::place(branch.direction);
+    const Vec3 weight = branch.weight * environment_share(place, branch.density);
     const bool filters = context_.filters_environment();
     if (filters && !branch.sees_sun) return weight * filtered_lobe(branch.direction, branch.cone);
     const real blur = std::max(filters ? 0 : branch.blur, environment_blur(branch.cone, branch.density));
-    return weight * context_.surroundings.radiance(branch.direction, blur);
+    return weight * context_.surroundings.radiance_at(place, blur);
 }
 
 /// The light of one of a hit's branches; `which`: 0 the first, 1 the second, which a channel is a
@@ -106,6 +109,11 @@ Vec3 Shader::follow(const Branch& branch, const Surface& surface, const Path& pa
     const real kept = guided ? 1 : roulette(largest(next.weight), path, RANDOM_ROULETTE + which);
     if (kept == 0) return Vec3(0);
     next.weight /= kept;
+    if (!is_reference && next.density > 0) {
+        // What the ray sees if it meets nothing comes while it is traced.
+        next.ahead = Surroundings::place(next.direction);
+        context_.surroundings.prefetch(*next.ahead, context_.samples_environment());
+    }
     return branch.weight * radiance(next, hit(next)) / kept;
 }
 
@@ -172,19 +180,20 @@ Vec3 Shader::missed(const Path& path, const Vec3& weight) {
     const bool straight = path.is_straight();
     if (straight) through_ += luminance(weight);
     if (straight && context_.settings.backdrop.kind != Backdrop::Kind::environment) return backdrop(path.direction);
-    const real share = environment_share(path.direction, path.density);
+    const Vec2 place = path.ahead ? *path.ahead : Surroundings::place(path.direction);
+    const real share = environment_share(place, path.density);
+    if (share == 0) return Vec3(0);
     if (context_.filters_environment() && !path.sees_sun) return share * filtered_lobe(path.direction, path.cone);
-    return share * context_.surroundings.seen(path.direction, environment_blur(path.cone, path.density), path.sees_sun,
-                                              context_.rough_limit);
+    return share * context_.surroundings.seen(path.direction, place, environment_blur(path.cone, path.density),
+                                              path.sees_sun, context_.rough_limit);
 }
 
 /// Has the path come as far as it is followed, but for what `passes` straight through a blended surface? Diffuse
 /// bounces are counted apart.
 bool Shader::is_last(const Path& path, bool passes) const {
-    const PictureSettings& settings = context_.settings;
-    if (path.level >= last_level(settings, context_.has_blended)) return true;
-    const uint32_t most = bounce_levels(settings, context_.has_blended);
-    return path.level - path.scattered >= (passes ? most : std::min(most, settings.bounces + path.passed));
+    if (path.level >= context_.last_level) return true;
+    const uint32_t most = context_.bounce_levels;
+    return path.level - path.scattered >= (passes ? most : std::min(most, context_.settings.bounces + path.passed));
 }
 
 /// Is it bright enough, and its effect on?

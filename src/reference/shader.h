@@ -39,6 +39,7 @@ struct RenderContext {
     Box box;      ///< of the scene
     Media start;  ///< what the camera is in
     bool has_blended;
+    uint32_t bounce_levels, last_level;   ///< of the tree of rays (scene/picture.h)
     const MomentBefore* before;           ///< null: guides need no motion
     const PhotonTree* photons = nullptr;  ///< of the sample; null: there are none
     bool glass_is_opaque = false;         ///< to light of lamps, which photons bring
@@ -89,14 +90,27 @@ class Shader {
         Channel channel = Channel::all;
         /// Straight from the camera?
         bool is_straight() const { return passed == level; }
-        bool guided = false;  ///< the denoiser's guides are looked for along it
-        real length = 0;      ///< of the path so far
+        bool guided = false;        ///< the denoiser's guides are looked for along it
+        real length = 0;            ///< of the path so far
+        std::optional<Vec2> ahead;  ///< where the ray looks in the environment's map, if that is known
     };
 
     Shader(const RenderContext& context, const PixelSample& sample) : context_(context), sample_(sample) {}
+    /// Goes on with another sample, which adds to the same rays.
+    void begin(const PixelSample& sample) {
+        sample_ = sample;
+        unlit_ = Vec3(0);
+        through_ = 0;
+        catches_ = false;
+        if (is_denoised(context_.settings)) {
+            guide_ = {};
+            guide_motion_ = no_motion;
+            image_ = {};
+        }
+    }
 
-    /// What the path's ray meets.
-    Meeting hit(const Path& path) const;
+    /// What the path's ray meets; `first`: the nearest triangle, if it is known.
+    Meeting hit(const Path& path, const Hit* first = nullptr) const;
     /// Light that comes back along the path from what it meets.
     Vec3 radiance(const Path& path, const Meeting& meeting);
     /// The rays traced so far, camera rays excepted.
@@ -165,7 +179,10 @@ class Shader {
         Vec3 direction;      ///< to the light, unit
     };
 
-    MediaWalk walk() const { return {context_.triangles, context_.surfaces, context_.media}; }
+    /// `crossed`: see MediaWalk.
+    MediaWalk walk(const HitsAlong* crossed = nullptr) const {
+        return {context_.triangles, context_.surfaces, context_.media, crossed};
+    }
     Scattered scatter(const Surface& surface, const Path& path, const Meeting& meeting) const;
     real traced_part(real roughness, real metallic) const;
     static optics::Lobe lobe_of(const Surface& surface);
@@ -213,7 +230,8 @@ class Shader {
     real below_sheen(const Surface& surface, real cosine) const;
 
     Seen seen(const Surface& surface, const Path& path) const;
-    Vec3 specular(const Surface& surface, const Path& path, const Parts& fresnel, real n_v, const Vec3& to_light) const;
+    Vec3 specular(const Surface& surface, const Path& path, const optics::Lobe& lobe, real density,
+                  const Parts& fresnel, real n_v, const Vec3& to_light) const;
     Vec3 reflectance(const Surface& surface, const Path& path, const Seen& seen, const Vec3& to_light) const;
     Vec3 scattered_light(const Surface& surface, const Path& path, const Meeting& meeting);
     Vec3 direct_light(const Lit& at, bool sky);
@@ -247,10 +265,11 @@ class Shader {
     Vec3 filtered_lobe(const Vec3& direction, const Cone& cone) const;
     Vec3 filtered_sky(const Lit& at, const BothSides& sky);
     Vec3 left_by_shadows(const Lit& at);
-    real environment_share(const Vec3& direction, real density) const;
+    /// `place`: in the environment's map.
+    real environment_share(const Vec2& place, real density) const;
     real environment_blur(const Cone& cone, real density) const;
     static Vec3 scattered_from(const Lit& at, const Vec3& direction);
-    Vec3 mirrored_from(const Lit& at, const Surroundings::Drawn& drawn, bool followed) const;
+    Vec3 mirrored_from(const Lit& at, const Vec3& direction, real drawn_density, bool followed) const;
     static bool mirrors_drawn(const Optics& m);
     static bool scatters(const Optics& m);
     static Vec3 draw_scattered(const Lit& at, Vec2 random);
@@ -280,7 +299,8 @@ class Shader {
     real through_ = 0;
     bool catches_ = false;
     DenoiseGuide guide_{};
-    DenoiseMotion guide_motion_{glm::vec2(0), 0, DENOISE_NO_OBJECT};
+    static constexpr DenoiseMotion no_motion{glm::vec2(0), 0, DENOISE_NO_OBJECT};
+    DenoiseMotion guide_motion_ = no_motion;
     PastImage image_;                              ///< of the guided path so far
     Vec3 camera_origin_{0}, camera_direction_{0};  ///< of the camera ray
 };

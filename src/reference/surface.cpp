@@ -125,7 +125,22 @@ Vec3 Surface::start(const Vec3& point, const Vec3& direction) const {
 }
 
 Surfaces::Surfaces(const Scene& scene, const Geometry& geometry) : scene_(scene), geometry_(geometry), mipmaps_(scene) {
-    for (const Material& material : scene.materials) optics_.emplace_back(material);
+    for (const Material& m : scene.materials) {
+        optics_.emplace_back(m);
+        const auto uses = {&m.transmission_texture,
+                           &m.clearcoat_texture,
+                           &m.coat_roughness_texture,
+                           &m.sheen_color_texture,
+                           &m.sheen_roughness_texture,
+                           &m.iridescence_texture,
+                           &m.film_thickness_texture,
+                           &m.diffuse_transmission_texture,
+                           &m.diffuse_transmission_color_texture,
+                           &m.specular_texture,
+                           &m.specular_color_texture};
+        const bool textured = std::ranges::any_of(uses, [](const MaterialTexture* use) { return bool(*use); });
+        is_plain_.push_back(!textured && m.diffuse_transmission == 0);
+    }
 }
 
 namespace {
@@ -142,6 +157,28 @@ real masked_roughness(const Surface& s, const Vec3& direction) {
 
 }  // namespace
 
+/// `normal`: in place of that of a triangle without an area. Returns the length of the cross product of its edges.
+real Surfaces::face_at(uint32_t triangle, const Vec3 (&p)[3], const Vec3& normal, const Vec3& direction,
+                       Face& face) const {
+    face.extent = 0;
+    for (const Vec3& corner : p)
+        face.extent = std::max({face.extent, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    face.material = geometry_.materials[triangle];
+    const Vec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const real size = glm::length(area);
+    face.geometric = size > 0 ? area / size : normal;
+    face.front = glm::dot(face.geometric, direction) < 0;
+    if (!face.front) face.geometric = -face.geometric;
+    return size;
+}
+
+Face Surfaces::face_at(uint32_t triangle, real u, real v, const Vec3& direction) const {
+    const auto [a, b, c] = corners(triangle);
+    const Vec3 p[3] = {a, b, c};
+    Face face;
+    return face_at(triangle, p, Vec3(0), direction, face) > 0 ? face : at(triangle, u, v, direction);
+}
+
 Surface Surfaces::at(uint32_t triangle, real u, real v, const Vec3& direction, real width) const {
     const glm::uvec3 corners = geometry_.triangles[triangle];
     Place place{corners, {std::max(0.0, 1 - u - v), u, v}, 0, nullptr, {}};
@@ -155,19 +192,11 @@ Surface Surfaces::at(uint32_t triangle, real u, real v, const Vec3& direction, r
         return values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2];
     };
     Surface s;
-    s.position = interpolate(p);
-    s.extent = 0;
-    for (const Vec3& corner : p)
-        s.extent = std::max({s.extent, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
-    s.error = position_rounding * s.extent;
-    s.material = geometry_.materials[triangle];
-    const Vec3 area = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const real size = glm::length(area);
     const Vec3 interpolated = interpolate(n);
     const Vec3 normal = glm::dot(interpolated, interpolated) > 0 ? glm::normalize(interpolated) : Vec3(0, 1, 0);
-    s.geometric = size > 0 ? area / size : normal;
-    s.front = glm::dot(s.geometric, direction) < 0;
-    if (!s.front) s.geometric = -s.geometric;
+    const real size = face_at(triangle, p, normal, direction, s);
+    s.position = interpolate(p);
+    s.error = position_rounding * s.extent;
     // The cone's cross-section, seen slanted (Akenine-Möller et al., JCGT 2021).
     const real slope = std::max(std::abs(glm::dot(s.geometric, direction)), LEAST_COSINE);
     if (size > 0) place.seen = 2 * width * width / (slope * size);
@@ -178,7 +207,7 @@ Surface Surfaces::at(uint32_t triangle, real u, real v, const Vec3& direction, r
         return optics::visible_normal(side * turned, s.geometric, -direction);
     };
     s.normal = seen(m.normal_texture, m.normal_scale);
-    s.coat_normal = seen(m.coat_normal_texture, m.coat_normal_scale);
+    s.coat_normal = m.clearcoat > 0 ? seen(m.coat_normal_texture, m.coat_normal_scale) : s.normal;
     real turn = 0, way = 0;
     for (int i = 0; i < 3; i++) {
         const Vec3 edge = p[(i + 1) % 3] - p[i];
@@ -224,28 +253,46 @@ bool Surfaces::blocks_itself(const Surface& s, uint32_t triangle, const Vec3& di
     return least >= -OWN_TRIANGLE_RIM * area(a, b, c);
 }
 
+namespace {
+
+/// Do two uses map a texture alike?
+bool maps_alike(const MaterialTexture& a, const MaterialTexture& b) {
+    return &a == &b || (a.uv_set == b.uv_set && a.uv_matrix == b.uv_matrix && a.uv_offset == b.uv_offset);
+}
+
+}  // namespace
+
+void Surfaces::map(const MaterialTexture& use, const Place& place) const {
+    if (place.last_mapped && maps_alike(*place.last_mapped, use)) return;
+    const std::vector<glm::vec2>& uvs = geometry_.uv_set(use.uv_set);
+    const Vec2 a(uvs[place.corners.x]), b(uvs[place.corners.y]), c(uvs[place.corners.z]);
+    const Mat2 matrix(use.uv_matrix);
+    place.mapped = matrix * (a * place.weights.x + b * place.weights.y + c * place.weights.z) + Vec2(use.uv_offset);
+    place.mapped_area = std::abs(glm::determinant(matrix * Mat2(b - a, c - a))) / 2;
+    place.last_mapped = &use;
+}
+
 template <typename Sample>
 auto Surfaces::filtered(const MaterialTexture& use, const Place& place, bool is_data, Sample sample) const {
-    const std::vector<glm::vec2>& uvs = geometry_.uv_set(use.uv_set);
-    const Mat2 matrix(use.uv_matrix);
-    const Vec2 at = matrix * place.interpolate(uvs) + Vec2(use.uv_offset);
+    map(use, place);
     const Texture& texture = scene_.textures[size_t(use.texture)];
     // How many texels the footprint covers, as the triangle maps them.
-    const Vec2 a(uvs[place.corners.x]), b(uvs[place.corners.y]), c(uvs[place.corners.z]);
-    const real area = std::abs(glm::determinant(matrix * Mat2(b - a, c - a))) / 2;
-    const real texels = place.seen * area * texture.width * texture.height;
+    const real texels = place.seen * place.mapped_area * texture.width * texture.height;
+    if (!(texels > 1)) return sample(texture, place.mapped, texture.nearest);
     const LevelChoice choice = choose_level(texture, std::log2(texels) / 2);
-    const std::vector<Texture>& smaller = mipmaps_.of(use.texture, is_data);
-    const auto level = [&](uint32_t i) { return sample(i == 0 ? texture : smaller[i - 1], at, choice.nearest); };
-    return choice.part > 0 ? glm::mix(level(choice.first), level(choice.second), choice.part) : level(choice.first);
+    const auto level = [&](uint32_t i) {
+        return sample(i == 0 ? texture : mipmaps_.of(use.texture, is_data)[i - 1], place.mapped, choice.nearest);
+    };
+    if (choice.part == 0) return level(choice.first);
+    return glm::mix(level(choice.first), level(choice.second), real(choice.part));
 }
 
 Vec4 Surfaces::data(const MaterialTexture& use, const Place& place, bool is_data) const {
     const MaterialTexture* last = place.last_use;
-    if (is_data && last && last->texture == use.texture && last->uv_set == use.uv_set &&
-        last->uv_matrix == use.uv_matrix && last->uv_offset == use.uv_offset)
-        return place.last_data;
-    const Vec4 found = filtered(use, place, is_data, sample_data<real>);
+    if (is_data && last && last->texture == use.texture && maps_alike(*last, use)) return place.last_data;
+    const Vec4 found = filtered(use, place, is_data, [](const Texture& texture, const Vec2& at, bool nearest) {
+        return sample_data(texture, at, nearest);
+    });
     if (is_data) {
         place.last_use = &use;
         place.last_data = found;
@@ -258,7 +305,10 @@ real Surfaces::number(const MaterialTexture& use, const Place& place) const {
 }
 
 Vec3 Surfaces::color(const MaterialTexture& use, const Place& place) const {
-    return use ? filtered(use, place, false, sample_color<real>) : Vec3(1);
+    if (!use) return Vec3(1);
+    return filtered(use, place, false, [](const Texture& texture, const Vec2& at, bool nearest) {
+        return sample_color(texture, at, nearest);
+    });
 }
 
 Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
@@ -272,26 +322,33 @@ Optics Surfaces::evaluate(uint32_t material, const Place& place) const {
         if (m.base_color_texture) o.alpha *= data(m.base_color_texture, place, false).w;
         if (o.alpha >= ALPHA_WHOLE) o.alpha = 1;
     }
-    o.emissive *= color(m.emissive_texture, place);
+    if (o.emissive != Vec3(0)) o.emissive *= color(m.emissive_texture, place);
     o.metallic *= number(m.metallic_texture, place);
     o.roughness *= number(m.roughness_texture, place);
+    o.occlusion = 1 + real(m.occlusion_strength) * (number(m.occlusion_texture, place) - 1);
+    o.clearcoat = real(m.clearcoat);
+    o.coat_roughness = real(m.coat_roughness);
+    if (!is_plain_[material]) evaluate_rare(o, m, place);
+    return o;
+}
+
+void Surfaces::evaluate_rare(Optics& o, const Material& m, const Place& place) const {
     o.transmission *= number(m.transmission_texture, place);
-    o.clearcoat = real(m.clearcoat) * number(m.clearcoat_texture, place);
-    o.coat_roughness = real(m.coat_roughness) * number(m.coat_roughness_texture, place);
+    o.clearcoat *= number(m.clearcoat_texture, place);
+    o.coat_roughness *= number(m.coat_roughness_texture, place);
     o.sheen *= color(m.sheen_color_texture, place);
     o.sheen_roughness *= number(m.sheen_roughness_texture, place);
     o.film *= number(m.iridescence_texture, place);
     o.film_thickness = glm::mix(real(m.film_least), real(m.film_most), number(m.film_thickness_texture, place));
     o.behind *= number(m.diffuse_transmission_texture, place);
     o.behind_color *= color(m.diffuse_transmission_color_texture, place);
-    if (!o.thin) o.behind_color *= glm::exp(-o.absorption * real(m.thickness) * number(m.thickness_texture, place));
+    if (!o.thin && o.behind > 0)
+        o.behind_color *= glm::exp(-o.absorption * real(m.thickness) * number(m.thickness_texture, place));
     if (m.specular_texture || m.specular_color_texture) {
         o.f90 *= number(m.specular_texture, place);
         o.f0 = glm::min(o.normal * Vec3(m.specular_color) * color(m.specular_color_texture, place), 1.0) * o.f90;
         o.specified = true;
     }
-    o.occlusion = 1 + real(m.occlusion_strength) * (number(m.occlusion_texture, place) - 1);
-    return o;
 }
 
 std::optional<Mat2x3> Surfaces::tangents(const Place& place, const Vec3& normal) const {

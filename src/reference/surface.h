@@ -81,18 +81,22 @@ struct AlbedoMeans {
     Vec3 metal(const Vec3& base_color) const { return base_color * normal + grazing; }
 };
 
-/// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
-struct Surface {
-    Vec3 position;
-    Vec3 geometric;     ///< unit normal of the triangle, on the ray's side
-    Vec3 normal;        ///< interpolated and bent by the normal texture, unit, on the ray's side
-    Vec3 coat_normal;   ///< of a clear coat
-    Vec3 along{0};      ///< of a surface with anisotropy: where the lobe is stretched, unit, in the normal's plane
-    Vec3 shadow_start;  ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
-    real extent;        ///< the largest coordinate of the triangle
-    real error;         ///< bound on the position's rounding error, world units
-    bool front;         ///< the ray comes from the side that the normals point to
+/// Of a triangle that a ray meets.
+struct Face {
+    Vec3 geometric;  ///< unit normal of the triangle, on the ray's side
+    real extent;     ///< the largest coordinate of the triangle
+    bool front;      ///< the ray comes from the side that the normals point to
     uint32_t material;
+};
+
+/// What shading needs to know of a hit (see Surface in shaders/path/frame.glsl).
+struct Surface : Face {
+    Vec3 position;
+    Vec3 normal;          ///< interpolated and bent by the normal texture, unit, on the ray's side
+    Vec3 coat_normal;     ///< of a clear coat
+    Vec3 along{0};        ///< of a surface with anisotropy: where the lobe is stretched, unit, in the normal's plane
+    Vec3 shadow_start;    ///< position moved to the smooth surface (Hanika, Ray Tracing Gems II, ch. 4)
+    real error;           ///< bound on the position's rounding error, world units
     Optics optics;        ///< the material here
     real mean_roughness;  ///< of the round lobe that masks the ray that came as much as the material's own
     real curvature;       ///< how much the normal turns per world unit; > 0: the ray meets a bulge
@@ -116,6 +120,8 @@ class Surfaces {
     /// The surface at the weights (u, v) of a triangle's second and third corner, seen along `direction` by a ray that
     /// stands for light of this `width` (0: a point, which textures do not blur).
     Surface at(uint32_t triangle, real u, real v, const Vec3& direction, real width = 0) const;
+    /// What of it needs neither the material nor its textures.
+    Face face_at(uint32_t triangle, real u, real v, const Vec3& direction) const;
     /// The emission there, where it is the same in all directions: below no coat, of what is not blended.
     std::optional<Vec3> plain_emission(uint32_t triangle, real u, real v) const;
     /// Does a ray along `direction` from the smooth surface at a point of the triangle pass through the triangle?
@@ -140,6 +146,10 @@ class Surfaces {
         /// What the last use of a texture for data found, for many are there for several of their channels.
         mutable const MaterialTexture* last_use = nullptr;
         mutable Vec4 last_data{0};
+        /// Texture coordinates of the last use, and the area of the triangle in them, for many uses share them.
+        mutable const MaterialTexture* last_mapped = nullptr;
+        mutable Vec2 mapped{0};
+        mutable real mapped_area = 0;
         template <typename T>
         auto interpolate(const std::vector<T>& values) const {
             return glm::vec<T::length(), real>(values[corners.x]) * weights.x +
@@ -147,6 +157,10 @@ class Surfaces {
                    glm::vec<T::length(), real>(values[corners.z]) * weights.z;
         }
     };
+    real face_at(uint32_t triangle, const Vec3 (&corners)[3], const Vec3& normal, const Vec3& direction,
+                 Face& face) const;
+    /// Finds the texture coordinates of a use.
+    void map(const MaterialTexture& use, const Place& place) const;
     /// What a use's texture shows there, filtered; sample(level, coordinates, nearest).
     template <typename Sample>
     auto filtered(const MaterialTexture& use, const Place& place, bool is_data, Sample sample) const;
@@ -156,6 +170,8 @@ class Surfaces {
     real number(const MaterialTexture& use, const Place& place) const;
     Vec3 color(const MaterialTexture& use, const Place& place) const;
     Optics evaluate(uint32_t material, const Place& place) const;
+    /// What few materials have textures for.
+    void evaluate_rare(Optics& optics, const Material& material, const Place& place) const;
     /// The interpolated tangent and bitangent, neither made unit; nothing where there are none.
     std::optional<Mat2x3> tangents(const Place& place, const Vec3& normal) const;
     void stretch(Surface& surface, const Place& place, const Vec3& normal) const;
@@ -164,6 +180,7 @@ class Surfaces {
     const Scene& scene_;
     const Geometry& geometry_;
     std::vector<Optics> optics_;
+    std::vector<uint8_t> is_plain_;  ///< of a material: evaluate_rare() finds nothing
     Mipmaps mipmaps_;
 };
 

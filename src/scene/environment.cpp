@@ -34,18 +34,40 @@ void add_levels(Environment& environment) {
     }
 }
 
+/// Directions to the texels' middles, as environment_direction() has them, whose sines and cosines are those of rows
+/// and columns: for each texel they took half of what it takes to read a picture.
+class TexelDirections {
+  public:
+    TexelDirections(uint32_t width, uint32_t height) : columns_(width), rows_(height) {
+        for (uint32_t x = 0; x < width; x++) {
+            const float phi = ((x + 0.5f) / width - 0.5f) * 2 * kPi;
+            columns_[x] = {std::sin(phi), std::cos(phi)};
+        }
+        for (uint32_t y = 0; y < height; y++) {
+            const float theta = (y + 0.5f) / height * kPi;
+            rows_[y] = {std::sin(theta), std::cos(theta)};
+        }
+    }
+    glm::vec3 operator()(uint32_t x, uint32_t y) const {
+        return {rows_[y].x * columns_[x].x, rows_[y].y, -rows_[y].x * columns_[x].y};
+    }
+
+  private:
+    std::vector<glm::vec2> columns_, rows_;  ///< sines and cosines
+};
+
 /// Projects the finest level onto nine harmonics and convolves with the cosine; `radiance(i)` may differ from the
 /// texels.
 template <typename Radiance>
 void project_irradiance(Environment& environment, Radiance radiance) {
     std::array<glm::dvec3, 9> sums{};
+    const TexelDirections directions(environment.width, environment.height);
     for (uint32_t y = 0; y < environment.height; y++) {
-        const float v = (y + 0.5f) / environment.height;
         const double solid_angle =
             2 * kPi / environment.width *
             (std::cos(kPi * y / environment.height) - std::cos(kPi * (y + 1) / environment.height));
         for (uint32_t x = 0; x < environment.width; x++) {
-            const glm::dvec3 d = environment_direction((x + 0.5f) / environment.width, v);
+            const glm::dvec3 d = directions(x, y);
             const glm::dvec3 light = glm::dvec3(radiance(size_t(y) * environment.width + x)) * solid_angle;
             const double basis[9] = {
                 1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
@@ -140,19 +162,18 @@ Environment image_environment(uint32_t width, uint32_t height, std::vector<glm::
 
     double mean = 0, area = 0;
     size_t brightest = 0;
-    const auto solid_angle = [&](size_t i) {
-        const double y = double(i / width);
-        return 2 * kPi / width * (std::cos(kPi * y / height) - std::cos(kPi * (y + 1) / height));
-    };
+    std::vector<double> solid_angles;  // of rows
+    for (double y = 0; y < height; y++)
+        solid_angles.push_back(2 * kPi / width * (std::cos(kPi * y / height) - std::cos(kPi * (y + 1) / height)));
+    const auto solid_angle = [&](size_t i) { return solid_angles[i / width]; };
     for (size_t i = 0; i < pixels.size(); i++) {
         mean += brightness(i) * solid_angle(i);
         area += solid_angle(i);
         if (brightness(i) > brightness(brightest)) brightest = i;
     }
     mean /= area;
-    const auto direction = [&](size_t i) {
-        return environment_direction((i % width + 0.5f) / width, (i / width + 0.5f) / height);
-    };
+    const TexelDirections directions(width, height);
+    const auto direction = [&](size_t i) { return directions(uint32_t(i % width), uint32_t(i / width)); };
     // A spot counts as a sun when it is 40 times brighter than the mean: windows and bright clouds are not.
     const float threshold = float(mean) * 40;
     std::vector<bool> taken(pixels.size(), false);

@@ -3,26 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "scene/environment.h"
 #include "scene/pi.h"
 #include "scene/probabilities.h"
-#include "scene/sampling.h"
 
 namespace peelray {
 namespace {
-
-/// Even x in the even bits, y in the odd ones.
-uint32_t morton(uint32_t x, uint32_t y) {
-    const auto spread = [](uint32_t v) {
-        v = (v | v << 8) & 0x00ff00ffu;
-        v = (v | v << 4) & 0x0f0f0f0fu;
-        v = (v | v << 2) & 0x33333333u;
-        return (v | v << 1) & 0x55555555u;
-    };
-    return spread(x) | spread(y) << 1;
-}
 
 uint32_t depth_for(const Environment& environment) {
     constexpr uint32_t least = 2, most = 10;
@@ -37,31 +26,51 @@ std::vector<double> means_of(const Environment& environment) {
     return means;
 }
 
+/// What the texels along one side of the map count for one cell, from the first on.
+struct Taps {
+    int first;
+    std::vector<double> weights;
+};
+
+/// Lookups interpolate: a few points of each texel that a cell covers make its mean. Three points a side integrate what
+/// is linear on either side of a texel's centre exactly (the trapezoidal rule).
+Taps taps_of(uint32_t cell, uint32_t cells, uint32_t texels) {
+    const uint32_t covered = std::max(1u, (texels + cells - 1) / cells);
+    const auto place = [&](uint32_t i) { return (cell + (i / 3 + 0.5 * (i % 3)) / covered) * texels / cells - 0.5; };
+    Taps taps{int(std::floor(place(0))), {}};
+    for (uint32_t i = 0; i < 3 * covered; i++) {
+        const double at = place(i), low = std::floor(at), weight = i % 3 == 1 ? 2 : 1;
+        const size_t before = size_t(int(low) - taps.first);
+        taps.weights.resize(std::max(taps.weights.size(), before + 2), 0);
+        taps.weights[before] += weight * (1 - (at - low));
+        taps.weights[before + 1] += weight * (at - low);
+    }
+    return taps;
+}
+
 }  // namespace
 
 EnvironmentDistribution::EnvironmentDistribution(const Environment& environment) : depth(depth_for(environment)) {
     const uint32_t height = 1u << depth, width = 2 * height;
-    // Lookups interpolate: a few points of each texel that a cell covers make its mean. Three points a side integrate
-    // what is linear on either side of a texel's centre exactly (the trapezoidal rule).
-    const uint32_t across = std::max(1u, (environment.width + width - 1) / width),
-                   down = std::max(1u, (environment.height + height - 1) / height);
     const int columns = int(environment.width), rows = int(environment.height);
     const std::vector<double> means = means_of(environment);
-    const auto mean_at = [&](int x, int y) {
-        return means[size_t(std::clamp(y, 0, rows - 1)) * size_t(columns) + size_t((x + columns) % columns)];
-    };
+    std::vector<Taps> across;
+    for (uint32_t x = 0; x < width; x++) across.push_back(taps_of(x, width, environment.width));
     std::vector<double> cells(size_t(width) * height);
     parallel_for(height, 4, [&](size_t y) {
         const double area = std::cos(kPi * double(y) / height) - std::cos(kPi * double(y + 1) / height);
+        // Down the columns first, one more on either side than there are: the map goes round.
+        const Taps down = taps_of(uint32_t(y), height, environment.height);
+        std::vector<double> sums(size_t(columns) + 2, 0);
+        for (size_t j = 0; j < down.weights.size(); j++) {
+            const double* const row = &means[size_t(std::clamp(down.first + int(j), 0, rows - 1)) * size_t(columns)];
+            for (size_t x = 0; x < size_t(columns); x++) sums[x + 1] += down.weights[j] * row[x];
+        }
+        sums.front() = sums[size_t(columns)];
+        sums.back() = sums[1];
         for (uint32_t x = 0; x < width; x++) {
-            double sum = 0;
-            for (uint32_t i = 0; i < 9 * across * down; i++) {
-                const uint32_t column = i % (3 * across), row = i / (3 * across);
-                const double weight = (column % 3 == 1 ? 2.0 : 1.0) * (row % 3 == 1 ? 2.0 : 1.0);
-                const double px = x + (column / 3 + 0.5 * (column % 3)) / across,
-                             py = double(y) + (row / 3 + 0.5 * (row % 3)) / down;
-                sum += weight * bilinear(glm::dvec2(px * columns / width, py * rows / height), mean_at);
-            }
+            const double* const first = &sums[size_t(across[x].first + 1)];
+            const double sum = std::inner_product(across[x].weights.begin(), across[x].weights.end(), first, 0.0);
             const uint32_t half = x / height;
             cells[(size_t(half) << 2 * depth) + morton(x % height, uint32_t(y))] = sum * area;
         }

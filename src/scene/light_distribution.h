@@ -24,6 +24,16 @@ struct EnvironmentDistribution {
     /// the map has texels where its sides are powers of two; at most 2048 × 1024.
     explicit EnvironmentDistribution(const Environment& environment);
 
+    /// x in the even bits, y in the odd ones.
+    static uint32_t morton(uint32_t x, uint32_t y) {
+        const auto spread = [](uint32_t v) {
+            v = (v | v << 8) & 0x00ff00ffu;
+            v = (v | v << 4) & 0x0f0f0f0fu;
+            v = (v | v << 2) & 0x33333333u;
+            return (v | v << 1) & 0x55555555u;
+        };
+        return spread(x) | spread(y) << 1;
+    }
     static uint32_t first(uint32_t level) { return 1 + 2 * ((1u << 2 * (level - 1)) - 1) / 3; }
 };
 

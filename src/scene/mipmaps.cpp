@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
 
 #include "scene/encoding.h"
 
@@ -121,15 +122,20 @@ std::vector<Texture> make_mipmaps(const Texture& texture, bool is_data) {
     }
 }
 
-Mipmaps::Mipmaps(const Scene& scene) : scene_(scene) {
+Mipmaps::Mipmaps(const Scene& scene) : scene_(scene), made_(2 * scene.textures.size()) {
     for (const Material& material : scene.materials)
         for (const auto use : material_textures)
-            if (material.*use) made_.try_emplace({(material.*use).texture, !is_color(use)});
+            if (material.*use) {
+                std::unique_ptr<Made>& made = made_.at(2 * size_t((material.*use).texture) + !is_color(use));
+                if (!made) made = std::make_unique<Made>();
+            }
 }
 
 const std::vector<Texture>& Mipmaps::of(int texture, bool is_data) const {
-    Made& made = made_.at({texture, is_data});
-    std::call_once(made.once, [&] {
+    Made* const found = made_.at(2 * size_t(texture) + is_data).get();
+    if (!found) throw std::out_of_range("no material uses the texture");
+    Made& made = *found;
+    made.once([&] {
         const Texture& source = scene_.textures[size_t(texture)];
         if (source.mipmaps != Texture::Mipmaps::none) made.levels = make_mipmaps(source, is_data);
     });

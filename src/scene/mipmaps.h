@@ -1,11 +1,10 @@
 // The smaller levels of textures. Every tracer filters by the same ones.
 #pragma once
 
-#include <map>
-#include <mutex>
-#include <utility>
+#include <memory>
 #include <vector>
 
+#include "base/once.h"
 #include "scene/scene.h"
 
 namespace peelray {
@@ -21,16 +20,16 @@ class Mipmaps {
   public:
     explicit Mipmaps(const Scene& scene);
 
-    /// None of a texture that is not filtered by levels.
+    /// None of a texture that is not filtered by levels. Throws std::out_of_range if no material uses it so.
     const std::vector<Texture>& of(int texture, bool is_data) const;
 
   private:
     struct Made {
-        std::once_flag once;
+        Once once;
         std::vector<Texture> levels;
     };
     const Scene& scene_;
-    mutable std::map<std::pair<int, bool>, Made> made_;
+    std::vector<std::unique_ptr<Made>> made_;  ///< per texture, of colours and of data; null: no material uses it so
 };
 
 /// Which levels of a texture serve a footprint of so many texels, and how far it is from the first to the second.

@@ -64,7 +64,7 @@ TEST(Surroundings, DrawnDirectionsFollowTheDensity) {
         std::vector<uint32_t> observed(expected.size());
         glm::dvec3 light(0), all(0);
         for (const glm::vec2& pair : test::independent_pairs(count, seed++)) {
-            const auto [direction, density] = surroundings.draw(pair);
+            const auto [direction, density, place] = surroundings.draw(pair);
             EXPECT_NEAR(glm::length(direction), 1, 1e-12);
             // Or it has been rounded beyond an edge.
             const double again = surroundings.density(direction);
@@ -95,7 +95,7 @@ TEST(Surroundings, NoDirectionWeighsMuch) {
     const Surroundings surroundings(environment);
     double mean = 0, most = 0;
     for (const glm::vec2& pair : test::independent_pairs(10000, 9)) {
-        const auto [direction, density] = surroundings.draw(pair);
+        const auto [direction, density, place] = surroundings.draw(pair);
         const glm::dvec3 light = surroundings.radiance(direction, 0);
         const double weight = (light.x + light.y + light.z) / 3 / density;
         mean += weight / 10000;
