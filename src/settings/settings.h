@@ -242,8 +242,7 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .limits = kResolutionLimits,
                  .of_cubes = true});
     add_refine(list, a.refine,
-               {.group = group,
-                .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones; no hit depends on it"});
+               {.group = group, .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones"});
     add_setting(list, a.tolerance,
                 {.name = "tolerance",
                  .group = group,
