@@ -16,7 +16,8 @@ Output probe(Input x) {
     o.depth = ldcDepthRange(t, centre, sampling, 0.0);
     // In the z-LDI (u, v, w) is (x, y, z).
     const uvec3 voxel = uvec3(x.pixel, x.voxel_w);
-    o.packed = x.planar != 0u ? uvec4(ldcPackSample(t, voxel, 2u, LDC_BAND, true), 0, 0) : ldcPackPatch(t, voxel, 7u << 2u | 2u, 1.0, PEELRAY_MARGIN, true);
+    o.packed = x.planar != 0u ? uvec4(ldcPackSample(t, voxel, 2u, LDC_BAND, true), 0, 0)
+                              : ldcPackPatch(t, voxel, 7u << 2u | 2u, 1.0, PEELRAY_MARGIN, true);
     o.touches = ldcTouches(t, vec3(voxel) + 0.5) ? 1u : 0u;
     return o;
 }
