@@ -91,6 +91,7 @@ void VoxelOrder::record(Commands& commands, const BuildState& state, const Trian
                   {"bodies", state.cubes.table.entries},
                   {"extent", state.extent}},
                  p, groups_for(p.cell_capacity, 64));
+    // It leaves the counters for the host, so that it runs where there are no samples as well.
     commands.run(state.device.pass("ldc_scatter"),
                  {{"counters", state.counters},
                   {"voxel_table", state.cubes.voxel_table},
@@ -105,7 +106,7 @@ void VoxelOrder::record(Commands& commands, const BuildState& state, const Trian
                   Binding::if_used("patches", state.cubes.patches),
                   Binding::if_used("corners", state.cubes.corners),
                   {"bodies", state.cubes.table.entries}},
-                 p, groups_for(p.fragment_capacity, 128));
+                 p, groups_for(std::max(p.fragment_capacity, 1u), 128));
     if (p.refine_capacity != 0) record_refinement(commands, state);
 }
 
