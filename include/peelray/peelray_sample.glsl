@@ -26,6 +26,9 @@ const float PEELRAY_SLOPE_RANGE = 1.25;
 /// Half-width of a sample's footprint for `planar` hits, in pixels.
 const float PEELRAY_FOOTPRINT = 0.7;
 
+/// The place of a cell among the 4x4x4 of its parent.
+uint peelrayIn64(uvec3 at) { return (at.z & 3u) << 4u | (at.y & 3u) << 2u | (at.x & 3u); }
+
 /// (x, y, z) as (u, v, w) of the LDI along `axis`, which is its w.
 vec3 peelrayToLdi(vec3 p, uint axis) { return axis == 0u ? p.yzx : (axis == 1u ? p.zxy : p); }
 

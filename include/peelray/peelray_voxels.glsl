@@ -52,8 +52,6 @@ struct PeelrayCell {
     uint j;      ///< its next sample
 };
 
-uint peelrayIn64(uvec3 at) { return (at.z & 3u) << 4u | (at.y & 3u) << 2u | (at.x & 3u); }
-
 /// `at`: the cell; `refined`, a constant: cells are finer voxels; `top_entry`: of the 16x16x16 voxels that it is in.
 PeelrayCell peelrayCellAt(uvec2 top_entry, uvec3 at, bool refined, PeelrayMirror mirror) {
     const int fine = refined ? 2 : 0;

@@ -145,14 +145,8 @@ uvec3 ldcTopCell(uint index, uvec3 dims) {
     const uvec3 tops = dims >> 4u;
     return uvec3(index % tops.x, (index / tops.x) % tops.y, index / (tops.x * tops.y));
 }
-uint ldcNodeInTop(uvec3 voxel) {
-    const uvec3 n = (voxel >> 2u) & 3u;
-    return n.z * 16u + n.y * 4u + n.x;
-}
-uint ldcVoxelInNode(uvec3 voxel) {
-    const uvec3 n = voxel & 3u;
-    return n.z * 16u + n.y * 4u + n.x;
-}
+uint ldcNodeInTop(uvec3 voxel) { return peelrayIn64(voxel >> 2u); }
+uint ldcVoxelInNode(uvec3 voxel) { return peelrayIn64(voxel); }
 /// A pixel of a body's three LDIs, which lie one behind the other.
 uint ldcPixelOfBody(uvec2 pixel, uint axis, uvec3 dims) {
     const uint before = axis == 0u ? 0u : dims.y * dims.z + (axis == 1u ? 0u : dims.z * dims.x);

@@ -4,7 +4,7 @@
 #include "ldc/ldc_params.h"
 layout(local_size_x = RASTER_THREADS) in;
 layout(constant_id = 0) const bool masked = false;       // centres where a material has a hole give no samples
-layout(constant_id = 1) const uint small_pixels = 48u;  // most of a small triangle's bounds: no more than 64
+layout(constant_id = 1) const uint small_pixels = 48u;  // most of a small triangle's bounds: no more than 128
 layout(constant_id = 2) const bool keeps_corners = false;  // for `exact` hits
 PARAMS(LdcParams)
 BUFFER(readonly, 0, vec3, positions)

@@ -3,6 +3,8 @@
 #version 460
 #define RASTER_THREADS 256
 #include "ldc/ldc_raster.glsl"
+#define LDC_OWNERS LDC_TRIANGLES
+#include "ldc/ldc_shared_items.glsl"
 
 /// A small triangle as an LDI sees it, and the pixels of its bounds.
 struct SmallTriangle {
@@ -11,7 +13,6 @@ struct SmallTriangle {
     uint width, id, body;
 };
 shared SmallTriangle small[LDC_TRIANGLES];
-shared uint pixels_up_to[LDC_TRIANGLES];  // those of a thread's triangle and of the threads before
 
 /// How many pixels of its LDI the thread's triangle gives the workgroup to go through.
 uint placeSmall(RasterTriangle triangle, uint axis) {
@@ -25,31 +26,11 @@ uint placeSmall(RasterTriangle triangle, uint axis) {
     return size.x * size.y;
 }
 
-/// Prefix sums of the threads' pixels; all threads must call.
-void sumPixels(uint pixels) {
-    const uint lane = gl_LocalInvocationIndex;
-    if (lane < LDC_TRIANGLES) pixels_up_to[lane] = pixels;
-    barrier();
-    for (uint step = 1u; step < LDC_TRIANGLES; step *= 2u) {
-        if (lane >= step && lane < LDC_TRIANGLES) pixels += pixels_up_to[lane - step];
-        barrier();
-        if (lane < LDC_TRIANGLES) pixels_up_to[lane] = pixels;
-        barrier();
-    }
-}
-
-/// Which triangle pixel `i` of the workgroup belongs to.
-uint ownerOf(uint i) {
-    uint first = 0u;
-    for (uint step = LDC_TRIANGLES / 2u; step > 0u; step /= 2u) first += pixels_up_to[first + step - 1u] <= i ? step : 0u;
-    return first;
-}
-
 /// Fragments in pixel `i` of the workgroup: counted if `write` is false, else written from `position` on. Returns how many.
 uint emitPixel(uint i, LdcPlace own, uint own_body, bool write, uint position) {
-    const uint owner = ownerOf(i);
-    const SmallTriangle s = small[owner];
-    const uint j = i - (owner == 0u ? 0u : pixels_up_to[owner - 1u]), row = j / s.width;
+    uint j;
+    const SmallTriangle s = small[ldcOwnerOf(i, j)];
+    const uint row = j / s.width;
     const ivec2 pixel = s.first + ivec2(j - row * s.width, row);
     LdcPlace place = own;
     if (s.body != own_body) place = ldcPlaceOf(s.body);
@@ -61,19 +42,18 @@ uint emitPixel(uint i, LdcPlace own, uint own_body, bool write, uint position) {
 
 /// The fragments of all pixels that the threads' triangles gave to the workgroup. All threads must call.
 void emitSmall(uint pixels, uint body) {
-    sumPixels(pixels);
-    const uint all = pixels_up_to[LDC_TRIANGLES - 1u];
+    const uint all = ldcNumberItems(pixels);
     const LdcPlace own = ldcPlaceOf(body);
     uint count = 0u;
-    uvec2 covered = uvec2(0);  // rounds of this thread that have fragments: at most small_pixels, which is no more than 64
+    uint covered = 0u;  // rounds of this thread that have fragments: no more than a fourth of small_pixels
     for (uint i = gl_LocalInvocationIndex, round = 0u; i < all; i += gl_WorkGroupSize.x, round++) {
         const uint emitted = emitPixel(i, own, body, false, 0u);
-        if (emitted != 0u) covered[round >> 5u] |= 1u << (round & 31u);
+        if (emitted != 0u) covered |= 1u << round;
         count += emitted;
     }
     uint position = ldcReserve(count);
     for (uint i = gl_LocalInvocationIndex, round = 0u; i < all; i += gl_WorkGroupSize.x, round++)
-        if ((covered[round >> 5u] >> (round & 31u) & 1u) != 0u) position += emitPixel(i, own, body, true, position);
+        if ((covered >> round & 1u) != 0u) position += emitPixel(i, own, body, true, position);
 }
 
 void main() {

@@ -14,6 +14,8 @@ BUFFER(readonly, 6, LdcBody, bodies)
 BUFFER(readonly, 7, uint, refine_queue)
 BUFFER(, 8, LdcRefined, refined)
 #include "ldc/ldc_corners.glsl"
+#define LDC_OWNERS gl_WorkGroupSize.x
+#include "ldc/ldc_shared_items.glsl"
 
 // Finer voxels are enlarged by this, in their own units: what LDC_SLACK does for voxels, twice.
 const float FINE_SLACK = 8.0 * LDC_SLACK;
@@ -23,7 +25,6 @@ shared uint lengths[64], starts[64], filled[64];
 // small: few groups run this, and code that runs once must be fetched.
 shared uint touched[2u * gl_WorkGroupSize.x];  // cells that a thread's triangle touches
 shared uint spans[gl_WorkGroupSize.x];         // its bounds in cells: lowest x, y, z, then extents less one, two bits each
-shared uint up_to[gl_WorkGroupSize.x];         // of a count, the sum over a thread's triangle and those before
 // Of the list's first triangles, so that they are not tested twice.
 const uint KEPT = 512u;
 shared uvec2 kept[KEPT];
@@ -73,26 +74,6 @@ bool touches(FineTriangle t, uvec3 cell) {
              separated(t.a.yz, t.b.yz, t.c.yz, centre.yz) || separated(t.a.zx, t.b.zx, t.c.zx, centre.zx));
 }
 
-/// Sums `count` over the threads up to each. All threads must call.
-void sumUp(uint count) {
-    const uint lane = gl_LocalInvocationIndex;
-    up_to[lane] = count;
-    barrier();
-    for (uint step = 1u; step < gl_WorkGroupSize.x; step *= 2u) {
-        if (lane >= step) count += up_to[lane - step];
-        barrier();
-        up_to[lane] = count;
-        barrier();
-    }
-}
-
-/// Which thread's triangle number `i` of what was summed up belongs to.
-uint ownerOf(uint i) {
-    uint owner = 0u;
-    for (uint step = gl_WorkGroupSize.x / 2u; step > 0u; step /= 2u) owner += up_to[owner + step - 1u] <= i ? step : 0u;
-    return owner;
-}
-
 /// Cells that the triangles from `base` on touch, one of each thread, in `touched`. All threads must call.
 void touchCells(LongList list, uint base) {
     const uint lane = gl_LocalInvocationIndex, i = base + lane;
@@ -106,14 +87,14 @@ void touchCells(LongList list, uint base) {
         spans[lane] = first.x | first.y << 2u | first.z << 4u | extent.x << 6u | extent.y << 8u | extent.z << 10u;
         cells = (extent.x + 1u) * (extent.y + 1u) * (extent.z + 1u);
     }
-    sumUp(cells);
-    const uint all = up_to[gl_WorkGroupSize.x - 1u];
+    const uint all = ldcNumberItems(cells);
     for (uint k = lane; k < all; k += gl_WorkGroupSize.x) {
-        const uint owner = ownerOf(k), span = spans[owner], width = (span >> 6u & 3u) + 1u, height = (span >> 8u & 3u) + 1u;
-        const uint j = k - (owner == 0u ? 0u : up_to[owner - 1u]), row = j / width;
+        uint j;
+        const uint owner = ldcOwnerOf(k, j), span = spans[owner];
+        const uint width = (span >> 6u & 3u) + 1u, height = (span >> 8u & 3u) + 1u, row = j / width;
         const uvec3 cell = (uvec3(span, span >> 2u, span >> 4u) & 3u) + uvec3(j - row * width, row % height, row / height);
         if (!touches(triangleOf(list, patches[list.first + base + owner].w), cell)) continue;
-        const uint bit = cell.z << 4u | cell.y << 2u | cell.x;
+        const uint bit = peelrayIn64(cell);
         atomicOr(touched[2u * owner + (bit >> 5u)], 1u << (bit & 31u));
     }
     barrier();
@@ -149,8 +130,8 @@ void countSamples(LongList list) {
 
 /// Writes sample `i` of those that the threads' triangles, which begin at `base`, have.
 void writeSample(LongList list, uint base, uint first, uint i) {
-    const uint owner = ownerOf(i);
-    const uint cell = bitOfRank(uvec2(touched[2u * owner], touched[2u * owner + 1u]), i - (owner == 0u ? 0u : up_to[owner - 1u]));
+    uint rank;
+    const uint owner = ldcOwnerOf(i, rank), cell = bitOfRank(uvec2(touched[2u * owner], touched[2u * owner + 1u]), rank);
     const uint id = patches[list.first + base + owner].w, place = atomicAdd(filled[cell], 1u);
     const FineTriangle t = triangleOf(list, id);
     patches[first + starts[cell] + place] = ldcPackPatch(ldcProjectFrom(1.0, t.a, t.b, t.c, t.normal, id & 3u), ldcCell64(cell), id, 0.25,
@@ -168,8 +149,7 @@ void writeSamples(LongList list, uint first) {
         } else {
             touchCells(list, base);
         }
-        sumUp(ldcMaskCount(uvec2(touched[2u * lane], touched[2u * lane + 1u])));
-        const uint all = up_to[gl_WorkGroupSize.x - 1u];
+        const uint all = ldcNumberItems(ldcMaskCount(uvec2(touched[2u * lane], touched[2u * lane + 1u])));
         for (uint k = lane; k < all; k += gl_WorkGroupSize.x) writeSample(list, base, first, k);
         barrier();
     }

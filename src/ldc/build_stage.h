@@ -53,7 +53,7 @@ class BuildStage {
     virtual void clear(Commands&, const BuildState&) {}
     virtual void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) = 0;
     /// After the submission: adds what this stage counted apart from the counters.
-    virtual void read(BuildCounts&) const {}
+    virtual void read(const BuildState&, BuildCounts&) const {}
     /// Raises the capacities that were too small; true if there were any.
     virtual bool grow(BuildState& state, const BuildCounts& counts) = 0;
     /// After the first build that fitted: lowers the capacities that were guessed to what is needed, with a reserve,

@@ -121,7 +121,7 @@ void CubeBuilder::record(Commands& commands, const TriangleBuffers& triangles) {
 bool CubeBuilder::finish(Commands& commands) {
     counts_ = {};
     std::memcpy(static_cast<LdcCounters*>(&counts_), state_->readback.mapped(), sizeof(LdcCounters));
-    order_->read(counts_);
+    order_->read(*state_, counts_);
     if (counts_.wrapped & LDC_FAR_TOLERANCE)
         fail(
             "the tolerance is more than {} voxels of a cube, which {} voxel cannot hold: choose a smaller {} or {}, or "
@@ -161,8 +161,8 @@ void CubeBuilder::build(Commands& commands, const TriangleBuffers& triangles) {
 }
 
 TableSize CubeBuilder::size() const {
-    // What was refined has a block of finer voxels, behind the nodes.
-    return {counts_.cells, counts_.occupied, uint64_t(counts_.nodes) + counts_.blocks_of_finer,
+    // What was to be refined has a block of finer voxels, behind the nodes.
+    return {counts_.cells, counts_.occupied, uint64_t(counts_.nodes) + counts_.refine,
             uint64_t(counts_.fragments) + counts_.fine};
 }
 

@@ -59,9 +59,8 @@ struct Refinement {
 
 /// What a build has counted.
 struct BuildCounts : LdcCounters {
-    uint32_t refined = 0;          ///< voxels that became 4³ finer ones
-    uint32_t blocks_of_finer = 0;  ///< room that the voxel table has for them
-    uint32_t fine = 0;             ///< samples of finer voxels
+    uint32_t refined = 0;  ///< voxels that became 4³ finer ones
+    uint32_t fine = 0;     ///< samples of finer voxels
 };
 
 /// How much of the cubes' tables some bodies take.

@@ -23,7 +23,7 @@ void VoxelOrder::guess(BuildState& state, const BuildSize& size) {
     p.node_capacity = bounded(state, size.pixels / 8 + 256, 256);
     p.occupied_capacity = bounded(state, std::min<uint64_t>(p.cell_capacity, size.pixels / 64 + 64), 256);
     p.refine_above = state.refinement.above;
-    p.refine_from = refine_from_ = state.refinement.from;
+    p.refine_from = state.refinement.from;
 }
 
 void VoxelOrder::allocate(Commands& commands, BuildState& state) {
@@ -160,9 +160,8 @@ void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32
                  p, groups_for(p.cell_capacity, 64));
 }
 
-void VoxelOrder::read(BuildCounts& counts) const {
-    if (counts.longest <= refine_from_) counts.refine = 0;
-    counts.blocks_of_finer = counts.refine;
+void VoxelOrder::read(const BuildState& state, BuildCounts& counts) const {
+    if (counts.longest <= state.params.refine_from) counts.refine = 0;
     if (counts.refine == 0 || !refined_readback_) return;
     LdcRefined refined;
     std::memcpy(&refined, refined_readback_.mapped(), sizeof refined);

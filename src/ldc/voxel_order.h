@@ -11,7 +11,7 @@ class VoxelOrder : public BuildStage {
     void allocate(Commands& commands, BuildState& state) override;
     void clear(Commands& commands, const BuildState& state) override;
     void record(Commands& commands, const BuildState& state, const TriangleBuffers& triangles) override;
-    void read(BuildCounts& counts) const override;
+    void read(const BuildState& state, BuildCounts& counts) const override;
     bool grow(BuildState& state, const BuildCounts& counts) override;
     void settle(BuildState& state, const BuildCounts& counts) override;
     uint64_t bytes() const override;
@@ -23,7 +23,6 @@ class VoxelOrder : public BuildStage {
     void record_sums(Commands& commands, const BuildState& state, uint32_t axis);
 
     Buffer top_cells_, node_cells_, voxel_counts_, occupancy_sums_;
-    uint32_t refine_from_ = 0;
     Buffer refine_queue_, refined_, refined_readback_;  ///< the latter: LdcRefined
 };
 
