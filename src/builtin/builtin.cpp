@@ -111,24 +111,16 @@ Scene make_glass() {
     wall.base_color_texture = build.tiles(2, 0x3C5CC8, 0xDCE8F0, false);
     build.add("wall", parallelogram({-6, 0, -3}, {12, 0, 0}, {0, 5, 0}, 8), build.material(wall));
 
-    const auto glass = [&](const char* name, const glm::vec3& tint, float thickness) {
-        Material out;
-        out.name = name;
-        out.roughness = 0;
-        out.transmission = 1;
-        out.ior = 1.5f;
-        out.thickness = thickness;
-        out.attenuation_color = tint;
-        out.attenuation_distance = 1.5f;
-        return build.material(out);
+    const auto of_glass = [&](const char* name, const glm::vec3& tint, float thickness) {
+        return build.material(glass(name, tint, thickness, 1.5f));
     };
     build.add("glass sphere", sphere({-0.55f, 0.85f, 1.3f}, 0.8f, 40),
-              glass("green glass", {0.70f, 0.95f, 0.80f}, 1.6f));
+              of_glass("green glass", {0.70f, 0.95f, 0.80f}, 1.6f));
     build.add(
-        "glass torus", torus({0, 0, 0}, 0.75f, 0.27f, 128, 64), glass("blue glass", {0.62f, 0.80f, 0.97f}, 0.54f),
+        "glass torus", torus({0, 0, 0}, 0.75f, 0.27f, 128, 64), of_glass("blue glass", {0.62f, 0.80f, 0.97f}, 0.54f),
         glm::rotate(glm::translate(glm::mat4(1), {0.15f, 1.1f, -0.5f}), glm::radians(72.f), glm::vec3(1, 0.15f, 0)));
     build.add("glass block", box({-0.35f, -0.6f, -0.35f}, {0.35f, 0.6f, 0.35f}),
-              glass("clear glass", {0.85f, 0.97f, 0.93f}, 0.7f),
+              of_glass("clear glass", {0.85f, 0.97f, 0.93f}, 0.7f),
               glm::rotate(glm::translate(glm::mat4(1), {1.35f, 0.61f, 0.95f}), glm::radians(32.f), glm::vec3(0, 1, 0)));
     build.add(
         "mirror", box({-1.0f, 0, -0.04f}, {1.0f, 2.3f, 0.04f}), build.material(metal("mirror", glm::vec3(0.95f))),

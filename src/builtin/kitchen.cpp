@@ -411,15 +411,8 @@ Materials add_materials(SceneBuilder& build) {
         out.roughness = roughness;
         return build.material(out);
     };
-    const auto glass = [&](const char* name, const glm::vec3& tint) {
-        Material out;
-        out.name = name;
-        out.roughness = 0;
-        out.transmission = 1;
-        out.thickness = 0.004f;
-        out.attenuation_color = tint;
-        out.attenuation_distance = 0.006f;
-        return build.material(out);
+    const auto of_glass = [&](const char* name, const glm::vec3& tint) {
+        return build.material(glass(name, tint, 0.004f, 0.006f));
     };
     Materials m;
     m.steel = plain("steel", {0.80f, 0.81f, 0.83f}, 0, true);
@@ -434,8 +427,8 @@ Materials add_materials(SceneBuilder& build) {
                                 {0.10f, 0.36f, 0.30f}};
     const char* names[] = {"white china", "blue china", "red china", "yellow china", "green china"};
     for (size_t i = 0; i < m.china.size(); i++) m.china[i] = plain(names[i], glazes[i], 0, false);
-    m.glass = {glass("green glass", {0.35f, 0.72f, 0.42f}), glass("brown glass", {0.66f, 0.36f, 0.12f}),
-               glass("clear glass", {0.93f, 0.97f, 0.96f})};
+    m.glass = {of_glass("green glass", {0.35f, 0.72f, 0.42f}), of_glass("brown glass", {0.66f, 0.36f, 0.12f}),
+               of_glass("clear glass", {0.93f, 0.97f, 0.96f})};
     return m;
 }
 

@@ -46,14 +46,8 @@ Scene make_particles(uint64_t count) {
     floor.base_color_texture = build.tiles(2, 0xE0E0E0, 0xB0B0B0, true);
     build.add("floor", parallelogram({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, 5), build.material(floor));
     build.add("fountain", sphere({0, 0.3f, 0}, 0.3f, 24), build.material(metal("chrome", {0.93f, 0.94f, 0.95f})));
-    Material glass;
-    glass.name = "glass";
-    glass.roughness = 0;
-    glass.transmission = 1;
-    glass.thickness = 1;
-    glass.attenuation_color = {0.8f, 0.93f, 0.96f};
-    glass.attenuation_distance = 0.8f;
-    build.add("glass ball", sphere({-0.95f, 0.36f, 1.35f}, 0.36f, 24), build.material(glass));
+    build.add("glass ball", sphere({-0.95f, 0.36f, 1.35f}, 0.36f, 24),
+              build.material(glass("glass", {0.8f, 0.93f, 0.96f}, 1, 0.8f)));
     build.add(
         "mirror", box({1.0f, 0, -0.03f}, {2.6f, 1.7f, 0.03f}), build.material(metal("mirror", glm::vec3(0.95f))),
         glm::rotate(glm::translate(glm::mat4(1), {-0.3f, 0.005f, -1.9f}), glm::radians(-12.f), glm::vec3(0, 1, 0)));

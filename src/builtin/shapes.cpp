@@ -78,6 +78,17 @@ Material metal(const char* name, const glm::vec3& color) {
     return out;
 }
 
+Material glass(const char* name, const glm::vec3& tint, float thickness, float distance) {
+    Material out;
+    out.name = name;
+    out.roughness = 0;
+    out.transmission = 1;
+    out.thickness = thickness;
+    out.attenuation_color = tint;
+    out.attenuation_distance = distance;
+    return out;
+}
+
 Primitive sphere(const glm::vec3& center, float radius, uint32_t n) {
     Primitive out;
     // Equal angles instead of equal lengths on the cube: squares of nearly equal size on the sphere. Exactly symmetric,

@@ -49,6 +49,8 @@ class SceneBuilder {
 
 Material matte(const char* name, const glm::vec3& color);
 Material metal(const char* name, const glm::vec3& color);
+/// `thickness`: 0 for thin sheets; `tint`: what is left of white after so much `distance` inside.
+Material glass(const char* name, const glm::vec3& tint, float thickness, float distance);
 
 /// A sphere as a subdivided cube (no poles, no slivers) with n×n squares per side.
 Primitive sphere(const glm::vec3& center, float radius, uint32_t n);

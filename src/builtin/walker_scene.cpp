@@ -102,17 +102,6 @@ Primitive curved_wall(float radius, float height, float degrees, uint32_t segmen
     return out;
 }
 
-Material glass(const char* name, const glm::vec3& tint, float thickness, float distance) {
-    Material out;
-    out.name = name;
-    out.roughness = 0;
-    out.transmission = 1;
-    out.thickness = thickness;
-    out.attenuation_color = tint;
-    out.attenuation_distance = distance;
-    return out;
-}
-
 void add_stage(SceneBuilder& build) {
     Material floor = metal("polished floor", glm::vec3(1));
     floor.metallic = 0.85f;
