@@ -15,4 +15,10 @@ std::optional<std::filesystem::path> find_program(std::string_view path, std::st
     return std::nullopt;
 }
 
+std::filesystem::path cache_folder(std::string_view xdg_cache_home, std::string_view home) {
+    if (!xdg_cache_home.empty()) return std::filesystem::path(xdg_cache_home) / "peelray";
+    if (!home.empty()) return std::filesystem::path(home) / ".cache" / "peelray";
+    return {};
+}
+
 }  // namespace peelray

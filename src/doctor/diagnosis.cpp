@@ -207,13 +207,13 @@ class Doctor {
     }
 
     void look_at_cache() {
-        const std::string home = around_.variable_or("HOME", ""),
-                          base = around_.variable_or("XDG_CACHE_HOME", home.empty() ? "" : home + "/.cache");
+        const fs::path folder =
+            cache_folder(around_.variable_or("XDG_CACHE_HOME", ""), around_.variable_or("HOME", ""));
         const char* loss = "shaders are compiled anew in every run";
-        if (base.empty())
+        if (folder.empty())
             return add("cache", fmt::format("neither HOME nor XDG_CACHE_HOME is set, and {}", loss),
                        "set XDG_CACHE_HOME to a folder");
-        const fs::path folder = fs::path(base) / "peelray", file = folder / fmt::format("doctor.{}.tmp", ::getpid());
+        const fs::path file = folder / fmt::format("doctor.{}.tmp", ::getpid());
         std::error_code error;
         fs::create_directories(folder, error);
         std::ofstream stream(file);

@@ -8,22 +8,19 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace peelray {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The string that follows `"key":` in a JSON text. A driver file is that simple, and a damaged one is no error here.
-std::string string_after(const std::string& json, std::string_view key) {
-    size_t at = json.find('"' + std::string(key) + '"');
-    if (at == std::string::npos) return "";
-    at = json.find(':', at + key.size() + 2);
-    if (at == std::string::npos) return "";
-    const size_t begin = json.find('"', at);
-    if (begin == std::string::npos) return "";
-    const size_t end = json.find('"', begin + 1);
-    return end == std::string::npos ? "" : json.substr(begin + 1, end - begin - 1);
+/// The library that a driver file names; empty: none, also where the file is damaged.
+std::string library_of(std::istream& driver_file) {
+    const auto json = nlohmann::json::parse(driver_file, nullptr, false);
+    if (!json.is_object() || !json.contains("ICD") || !json["ICD"].is_object()) return "";
+    const auto path = json["ICD"].find("library_path");
+    return path != json["ICD"].end() && path->is_string() ? path->get<std::string>() : "";
 }
 
 std::vector<fs::path> split(const std::string& list) {
@@ -137,8 +134,7 @@ std::vector<DriverFile> driver_files(const Surroundings& around) {
     for (const fs::path& path : places) {
         std::ifstream stream(path);
         if (!stream || path.extension() != ".json") continue;
-        const std::string json(std::istreambuf_iterator<char>(stream), {});
-        DriverFile driver{path, string_after(json, "library_path"), ""};
+        DriverFile driver{path, library_of(stream), ""};
         if (driver.library.empty())
             driver.fault = "the file names no library";
         else if (driver.library.find('/') == std::string::npos)

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/search_path.h"
+
 namespace peelray {
 namespace {
 
@@ -46,19 +48,13 @@ std::vector<char> PipelineCache::unseal(const std::vector<char>& file) {
 }
 
 std::filesystem::path PipelineCache::file_for(const VkPhysicalDeviceProperties& properties) {
-    std::filesystem::path folder;
     const char* xdg = std::getenv("XDG_CACHE_HOME");
     const char* home = std::getenv("HOME");
-    if (xdg && *xdg)
-        folder = xdg;
-    else if (home && *home)
-        folder = std::filesystem::path(home) / ".cache";
-    else
-        return {};
+    const std::filesystem::path folder = cache_folder(xdg ? xdg : "", home ? home : "");
+    if (folder.empty()) return {};
     std::string uuid;
     for (uint8_t byte : properties.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
-    return folder / "peelray" /
-           fmt::format("pipelines-{:04x}-{:04x}-{}.bin", properties.vendorID, properties.deviceID, uuid);
+    return folder / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", properties.vendorID, properties.deviceID, uuid);
 }
 
 PipelineCache::PipelineCache(Device& device, bool on_disk) : device_(device) {
