@@ -27,7 +27,7 @@ struct PeelrayInstance {
     vec3 y;
     float inv_voxel;
     vec3 z;
-    uint tops;  ///< the grid's dims in 16 voxels: 10 bits each; PEELRAY_BARE
+    uint tops;  ///< the grid's dims in 16 voxels: 10 bits each; PEELRAY_BARE, PEELRAY_MERGED
     vec3 corner;
     uint
         first_cell;  ///< the cube's first entry in the table of 16x16x16-voxel cells, or its first pixel (by-pixel
@@ -40,6 +40,10 @@ struct PeelrayInstance {
 /// instead of walking through a cube, and there is none.
 #define PEELRAY_BARE 0x80000000u
 #define PEELRAY_BARE_TRIANGLES 4u
+
+/// Of PeelrayInstance::tops: copies of the instance's triangles are in a cube that it shares with others, and it is not in
+/// the hierarchy; first_cell: added to the number of a triangle, that of its copy.
+#define PEELRAY_MERGED 0x40000000u
 
 /// A box of the hierarchy over the instances, in the world; lower > upper: nothing.
 struct PeelrayBox {

@@ -22,9 +22,10 @@ void growBounds(uint body, vec3 position, bool valid) {
         }
     }
     barrier();
+    // Most of a large body's workgroups are inside what others have found.
     if (lane < 3u) {
-        atomicMin(body_lower[body][lane], lowers[0][lane]);
-        atomicMax(body_upper[body][lane], uppers[0][lane]);
+        if (lowers[0][lane] < body_lower[body][lane]) atomicMin(body_lower[body][lane], lowers[0][lane]);
+        if (uppers[0][lane] > body_upper[body][lane]) atomicMax(body_upper[body][lane], uppers[0][lane]);
     }
 }
 

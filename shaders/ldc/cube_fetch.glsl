@@ -1,6 +1,7 @@
-// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9, FIRST + 48 and 49.
+// The cubes' buffers as the traversal's fetches; include before peelray/peelray.glsl. Bindings FIRST to FIRST + 9, FIRST + 48 to 50.
 #include "common/instance.h"
 #include "ldc/ldc_params.h"
+#include "peelray/ray.glsl"
 #ifndef CUBE_FIRST_BINDING
 #define CUBE_FIRST_BINDING 0
 #endif
@@ -13,6 +14,8 @@ BUFFER(readonly, CUBE_FIRST_BINDING + 4, uint, sample_ids)
 #include "ldc/ldc_corners.glsl"
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 48, uvec4, patches)
 BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 49, LdcCorners, corners)
+layout(constant_id = 19) const bool merging = false;  // some instances' triangles have copies, which share a cube
+BUFFER_ALIGNED(readonly, CUBE_FIRST_BINDING + 50, uvec2, copied)  // of each copy: instance and triangle
 #endif
 BUFFER(readonly, CUBE_FIRST_BINDING + 5, vec3, positions)
 BUFFER(readonly, CUBE_FIRST_BINDING + 6, uvec3, triangles)
@@ -40,6 +43,15 @@ void cubeTriangle(uint id, out vec3 a, out vec3 b, out vec3 c) {
 }
 #define PEELRAY_TRIANGLE(id, a, b, c) cubeTriangle(id, a, b, c)
 #define PEELRAY_CORNERS(id, a, b, c) ldcCornersOf(corners[id], a, b, c)
+
+#ifdef PEELRAY_ONLY_PIXELS
+#define cubeSurface(instance, triangle) uvec2(instance, triangle)
+#else
+/// The instance and the triangle of a hit, as everybody else knows them.
+uvec2 cubeSurface(uint instance, uint triangle) {
+    return merging && triangle != PEELRAY_MISS && triangle >= params.first_copy ? copied[triangle - params.first_copy] : uvec2(instance, triangle);
+}
+#endif
 
 /// Barycentric weights (second and third corner) of a hit at `p` on a sample: of the nearest point of the triangle's plane, moved
 /// into the triangle.

@@ -17,6 +17,8 @@ BUFFER(readonly, 4, uvec3, body_upper)
 BUFFER(writeonly, 5, GpuInstance, instances)
 BUFFER(writeonly, 6, PeelrayBox, instance_boxes)
 BUFFER(writeonly, 7, PeelrayInstance, instance_cubes)
+layout(constant_id = 0) const bool merging = false;  // some instances are merged
+BUFFER(readonly, 8, InstanceRole, roles)
 
 /// a*b - c*d with one rounding's error.
 float difference(float a, float b, float c, float d) {
@@ -43,11 +45,13 @@ PeelrayBox boxOf(uint index, uint body, GpuTransform to_world, float voxel, bool
 
 void main() {
     const uint i = GLOBAL_INDEX;
-    if (i >= params.padded) return;
     if (i >= params.count) {
-        instance_boxes[i] = NO_BOX;
+        const uint empty = params.boxes + i - params.count;
+        if (empty < params.padded) instance_boxes[empty] = NO_BOX;
         return;
     }
+    const uint box = merging ? roles[i].box : i;  // its number among those that have one
+    const bool merged = box == INSTANCE_MERGED;
     const GpuTransform to_world = transforms[i];
     const InstanceInfo info = infos[i];
     const CubeGrid grid = bodies[info.body].grid;
@@ -72,6 +76,10 @@ void main() {
         cube.tops |= PEELRAY_BARE;
         cube.first_cell = bodies[info.body].first_triangle | (bodies[info.body].triangles - 1u) << 30u;
     }
+    if (merged) {
+        cube.tops |= PEELRAY_MERGED;
+        cube.first_cell = roles[i].copies;
+    }
     cube.corner = to_world.linear * grid.origin + to_world.position;
     cube.origin = grid.origin;
     cube.moved = to_world.linear == mat3(1) && to_world.position == vec3(0) ? 0u : 1u;
@@ -83,6 +91,7 @@ void main() {
     instance.mirrored = determinant < 0.0 ? 1u : 0u;
     instance.voxel = grid.voxel * size;
     instances[i] = instance;
-    const uint slot = params.padded == 8u ? params.slots >> 4u * i & 15u : i;
+    if (merged) return;
+    const uint slot = params.padded == 8u ? params.slots >> 4u * box & 15u : box;
     instance_boxes[slot] = boxOf(i, info.body, to_world, grid.voxel, bare && cube.moved == 0u);
 }

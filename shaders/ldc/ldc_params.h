@@ -55,10 +55,11 @@ struct LdcParams {
     uint side;            ///< of peeling: pixels along a side of the targets
     uint refine_above;     ///< lists longer than this are refined; ~0: none
     uint refine_from;      ///< but only if the longest list of all is longer than this
+    uint refine_most;      ///< and no more than so many are to be
     uint refine_capacity;  ///< lists to be refined that have room
     uint fine_capacity;    ///< samples of finer voxels that have room
 };
-SHARED_SIZE(LdcParams, 100);
+SHARED_SIZE(LdcParams, 104);
 #define LDC_CONSERVATIVE 0u  // every pixel that a triangle touches: `exact`
 #define LDC_BAND 1u          // pixel centres, with the overlap band: `planar`
 #define LDC_CENTRE 2u        // pixel centres, each triangle in one LDI, as in the paper: `tolerance`

@@ -158,7 +158,9 @@ void writeSamples(LongList list, uint first) {
 void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint lists = counters[0].refine;
-    if (!LDC_FITS(counters[0]) || counters[0].longest <= params.refine_from || lists > params.refine_capacity || GROUP_INDEX >= lists) return;
+    if (!LDC_FITS(counters[0]) || counters[0].longest <= params.refine_from || lists > params.refine_most ||
+        lists > params.refine_capacity || GROUP_INDEX >= lists)
+        return;
     const uint voxel = refine_queue[GROUP_INDEX];
     const uint entry_at = params.first_node * 64u + voxel, cell_of_node = node_cells[voxel >> 6u].x;
     LongList list;

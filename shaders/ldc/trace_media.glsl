@@ -19,12 +19,13 @@ BUFFER(, 13, Hit, hits)
 #define HITS_FORGET
 #include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
+#include "ldc/cube_trace.glsl"
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #define MEDIA_FORGETS (hit_test == PEELRAY_EXACT)
 #include "path/media_walk.glsl"
 
-PeelrayHit mediaNearest(PeelrayRay ray, uvec2 skip) { return peelrayTrace(params.tree, ray, skip, shadowOptions(false)); }
+PeelrayHit mediaNearest(PeelrayRay ray, uvec2 skip) { return cubeTrace(ray, skip, shadowOptions(false)); }
 
 vec2 mediaWeights(PeelrayRay ray, PeelrayHit hit) {
     return hit_test != PEELRAY_EXACT ? cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;

@@ -25,8 +25,11 @@ struct TraceParams {
     uint skips;       ///< 1: ray i must not hit skip[i]
     float tolerance;  ///< of `tolerance` hits, world units
     uvec2 block;      ///< pixels of a block of two_level
+    // With the constant `merging` (MergedInstances):
+    uint merged_instance;  ///< that which shows the copies
+    uint first_copy;       ///< triangle: from here on they are copies
 };
-SHARED_SIZE(TraceParams, 68);
+SHARED_SIZE(TraceParams, 76);
 
 /// What the rays of one kind cost in all (shaders/common/counting.glsl).
 struct CountTotals {

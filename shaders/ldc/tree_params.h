@@ -10,10 +10,19 @@ namespace peelray {
 
 struct InstanceParams {
     uint count;
+    uint boxes;   ///< that have one in the hierarchy: all of them, but where some are merged
     uint padded;  ///< rounded up to a multiple of 8
-    uint slots;   ///< of up to 8 instances where their boxes go, four bits each: those of bare bodies first
+    uint slots;   ///< of up to 8 boxes where they go, four bits each: those of bare bodies first
 };
-SHARED_SIZE(InstanceParams, 12);
+SHARED_SIZE(InstanceParams, 16);
+
+/// What becomes of an instance where some are merged.
+struct InstanceRole {
+    uint box;     ///< its number among those that have one; INSTANCE_MERGED: it has none
+    uint copies;  ///< of a merged one: added to the number of a triangle, that of its copy
+};
+SHARED_SIZE(InstanceRole, 8);
+#define INSTANCE_MERGED 0xffffffffu
 
 /// Parameters of all tree_* passes.
 struct TreeParams {

@@ -6,8 +6,8 @@
 uvec4 media_forgotten = uvec4(0xffffffffu), media_forgotten_in = uvec4(0xffffffffu);
 uint media_visited = 0xffffffffu;  // the instance that the ray is in
 
-bool mediaForgotten(uint triangle) {
-    const bvec4 same = equal(media_forgotten, uvec4(triangle)), here = equal(media_forgotten_in, uvec4(media_visited));
+bool mediaForgotten(uint instance, uint triangle) {
+    const bvec4 same = equal(media_forgotten, uvec4(triangle)), here = equal(media_forgotten_in, uvec4(instance));
     return any(bvec4(same.x && here.x, same.y && here.y, same.z && here.z, same.w && here.w));
 }
 void mediaForget(uint instance, uint triangle) {

@@ -11,12 +11,13 @@ PARAMS(TraceParams)
 #define HITS_TO_LIGHT
 #include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
+#include "ldc/cube_trace.glsl"
 #include "path/frame.glsl"
 #define SHADOW_FIRST_BINDING 10
 #define SHADOW_THROUGH_GLASS
 #include "path/trace_shadow.glsl"
 
-PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return peelrayTrace(params.tree, ray, skip, shadowOptions(any)); }
+PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return cubeTrace(ray, skip, shadowOptions(any)); }
 
 vec2 shadowWeights(PeelrayRay ray, PeelrayHit hit) {
     return hit_test != PEELRAY_EXACT ? cubeWeights(hit.instance, hit.triangle, ray.origin + hit.t * ray.direction) : hit.uv;

@@ -14,6 +14,7 @@ BUFFER(readonly, 32, uint, media_ranks)
 #define HITS_FORGET
 #include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
+#include "ldc/cube_trace.glsl"
 #include "path/frame.glsl"
 #include "path/media.glsl"
 #define MEDIA_FORGETS (hit_test == PEELRAY_EXACT)
@@ -22,7 +23,7 @@ BUFFER(readonly, 32, uint, media_ranks)
 #define SHADOW_THROUGH_MEDIA
 #include "path/trace_shadow.glsl"
 
-PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return peelrayTrace(params.tree, ray, skip, shadowOptions(any)); }
+PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return cubeTrace(ray, skip, shadowOptions(any)); }
 PeelrayHit mediaNearest(PeelrayRay ray, uvec2 skip) { return traceShadow(ray, skip, false); }
 
 vec2 mediaWeights(PeelrayRay ray, PeelrayHit hit) {

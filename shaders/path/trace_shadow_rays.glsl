@@ -10,9 +10,10 @@ PARAMS(TraceParams)
 #define HITS_TO_LIGHT
 #include "ldc/hit_hooks.glsl"
 #include "peelray/peelray.glsl"
+#include "ldc/cube_trace.glsl"
 #define SHADOW_FIRST_BINDING 10
 #include "path/trace_shadow.glsl"
 
-PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return peelrayTrace(params.tree, ray, skip, shadowOptions(any)); }
+PeelrayHit traceShadow(PeelrayRay ray, uvec2 skip, bool any) { return cubeTrace(ray, skip, shadowOptions(any)); }
 
 void main() { shadowRay(GLOBAL_INDEX, params.count); }

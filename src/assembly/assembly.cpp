@@ -63,6 +63,9 @@ class Assembler {
         for (auto& [key, places] : deforming_) add_deforming(places);
         std::stable_sort(out_.instances.begin(), out_.instances.end(),
                          [](const auto& a, const auto& b) { return a.body < b.body; });
+        for (Instance& instance : out_.instances)
+            instance.moves =
+                instance.node >= 0 && (motion_.moves[size_t(instance.node)] || generated_.contains(instance.node));
         return std::move(out_);
     }
 

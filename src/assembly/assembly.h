@@ -13,6 +13,7 @@ struct Assembly {
         uint32_t first_triangle = 0, triangles = 0, first_vertex = 0, vertices = 0;
         glm::vec3 lower{0}, upper{0};  ///< in its own space; of one that deforms: in the moment it was assembled at
         double inverse_edges = 0;      ///< sum of 1 / mean_edge() over its triangles, for serving_resolution
+        bool merged = false;           ///< copies of small bodies that move by themselves (MergedInstances)
     };
 
     /// A body and where it stands: in the space of a node, in which it is moved by `offset`.
@@ -22,6 +23,7 @@ struct Assembly {
         glm::mat4 offset{1};
         uint32_t first_id = 0;      ///< added to the ids of its triangles: their index in the scene, in file order
         uint32_t first_object = 0;  ///< added to the objects of its triangles: their Geometry::Object
+        bool moves = false;         ///< by itself: its node is not there for the sake of precision alone
     };
 
     /// A primitive of a node in a body that deforms. Its vertices are computed for every moment, in world space.

@@ -21,7 +21,7 @@ struct BenchSettings {
     std::vector<RayKind> rays;
     std::vector<std::optional<uint32_t>> ldc;      ///< none: auto
     std::optional<std::vector<glm::uvec2>> sizes;  ///< of the series of picture sizes
-    std::optional<uint32_t> refine;
+    std::optional<uint32_t> refine, merge;
     glm::uvec2 block{8}, size{0};
     Routing routing = Routing::geometry;
     std::optional<double> tolerance;  ///< none: in proportion to the scene

@@ -59,6 +59,7 @@ BenchSceneChoice choose_bench_scene(const std::string& name, const BenchSettings
     PictureArguments& p = choice.picture;
     p.size = a.size;
     p.tracing.refine = a.refine;
+    p.tracing.merge = a.merge;
     p.double_sided = true;  // rays are compared with those of tracers that know no sides
     if (const PaperScene* scene = paper_scene(name)) {
         const auto file = find_model(a.models.value_or("models"), *scene);

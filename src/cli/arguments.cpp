@@ -311,6 +311,8 @@ void add_measured(SettingList& list, BenchArguments& a) {
               .excludes = {"quick"}},
              parse_resolution);
     add_refine(list, a.refine, {.group = group, .help = "of exact: voxels with more than N samples become finer ones"});
+    add_merge(list, a.merge,
+              {.group = group, .help = "of exact: moving objects of at most N triangles share a cube; 0: none do"});
     add_choices(list, a.traversals,
                 {.name = "traversals",
                  .group = group,

@@ -85,6 +85,7 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
         json["refined_voxels"] = cubes.counts.refined;
         json["refined_samples"] = cubes.counts.fine;
     }
+    if (cubes.merged != 0) json["merged"] = {{"instances", cubes.merged}, {"triangles", cubes.merged_triangles}};
     if (by_pixel) {
         json["depth_bits"] = choice.layout.half_depth ? 16 : 32;
         json["batch"] = name_of(choice.layout.batch);

@@ -45,8 +45,8 @@ BodyTable::BodyTable(Device& device, std::vector<CubeBody> bodies, const char* p
     commands.upload(upper, std::span<const glm::uvec3>(highest));
 }
 
-void BodyTable::record_emptying(Commands& commands, uint32_t first) const {
-    const uint64_t count = bodies_.size() - first;
+void BodyTable::record_emptying(Commands& commands, uint32_t first, uint32_t end) const {
+    const uint64_t count = end - first;
     if (count == 0) return;
     commands.fill(lower, ~0u, first * 12ull, count * 12);
     commands.fill(upper, 0, first * 12ull, count * 12);

@@ -33,8 +33,8 @@ class BodyTable {
 
     const std::vector<CubeBody>& bodies() const { return bodies_; }
 
-    /// Records that the bounds of all bodies from `first` on hold nothing.
-    void record_emptying(Commands& commands, uint32_t first) const;
+    /// Records that the bounds of bodies [first, end) hold nothing.
+    void record_emptying(Commands& commands, uint32_t first, uint32_t end) const;
 
     /// The entries as the last submission left them.
     std::vector<LdcBody> download(Commands& commands) const;

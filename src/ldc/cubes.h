@@ -51,9 +51,9 @@ struct CubeLayout {
 CubeGrid make_grid(const glm::vec3& lower, const glm::vec3& upper, uint32_t resolution);
 
 /// Which voxels become 4³ finer ones, in cubes for `exact` hits by voxel: those that hold more than `above` samples, if
-/// some voxel holds more than `from`. No hit depends on it.
+/// some voxel holds more than `from` and there are `most` of them at most. No hit depends on it.
 struct Refinement {
-    uint32_t above = ~0u, from = 0;
+    uint32_t above = ~0u, from = 0, most = ~0u;
     bool operator==(const Refinement&) const = default;
 };
 

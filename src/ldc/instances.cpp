@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 #include "base/error.h"
 #include "common/scan_params.h"
@@ -21,12 +22,29 @@ uint32_t bits_for(uint32_t instances) {
 
 }  // namespace
 
-Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : device_(device) {
+Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos)
+    : device_(device), count_(uint32_t(infos.size())) {
     Commands commands(device);
     assert(!infos.empty());
     if (infos.size() > 1u << 24)
         fail("the scene has {} instances of moving or repeated objects, at most 2^24 are supported", infos.size());
-    const auto count = uint32_t(infos.size());
+    // Room for one that shows what is merged.
+    const uint64_t room = count_ + 1ull;
+    infos_ = Buffer(device, "what instances show", room * sizeof(InstanceInfo));
+    commands.upload(infos_, std::span<const InstanceInfo>(infos));
+    transforms_ = Buffer(device, "where instances stand", room * sizeof(GpuTransform));
+    const GpuTransform nowhere_else{glm::mat3(1), glm::vec3(0)};
+    commands.upload(transforms_, std::span(&nowhere_else, 1), count_ * sizeof(GpuTransform));
+    table_ = Buffer(device, "instances", room * sizeof(GpuInstance));
+    cubes_ = Buffer(device, "cubes of instances", room * sizeof(PeelrayInstance));
+    for (const InstanceInfo& info : infos) bodies_.push_back(info.body);
+    make_tree(bodies_);
+}
+
+void Instances::make_tree(const std::vector<uint32_t>& bodies) {
+    const auto count = uint32_t(bodies.size());
+    few_.clear();
+    tree_ = {};
     tree_.instances = count;
     uint32_t total = 0;
     for (uint32_t boxes = filled(count);; boxes = filled(boxes / 8)) {
@@ -34,24 +52,46 @@ Instances::Instances(Device& device, const std::vector<InstanceInfo>& infos) : d
         total += boxes;
         if (boxes <= 8) break;
     }
-    infos_ = Buffer(device, "what instances show", infos.size() * sizeof(InstanceInfo));
-    commands.upload(infos_, std::span<const InstanceInfo>(infos));
-    transforms_ = Buffer(device, "where instances stand", count * sizeof(GpuTransform));
-    table_ = Buffer(device, "instances", count * sizeof(GpuInstance));
-    cubes_ = Buffer(device, "cubes of instances", count * sizeof(PeelrayInstance));
-    boxes_ = Buffer(device, "boxes of instances", total * sizeof(PeelrayBox));
+    boxes_ = Buffer(device_, "boxes of instances", total * sizeof(PeelrayBox));
+    for (Buffer* buffer : {&unsorted_boxes_, &middles_, &keys_, &sums_, &block_sums_, &unsorted_instances_})
+        buffer->reset();
     if (count <= 8) {
-        for (const InstanceInfo& info : infos) few_.push_back(info.body);
+        few_ = bodies;
         return;
     }
-    unsorted_boxes_ = Buffer(device, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
+    unsorted_boxes_ = Buffer(device_, "unsorted boxes of instances", filled(count) * sizeof(PeelrayBox));
     if (count <= TREE_SMALL) return;
     const uint64_t buckets = 1ull << (3 * bits_for(count));
-    middles_ = Buffer(device, "middles of instances", 24);
-    keys_ = Buffer(device, "keys of instances", count * sizeof(TreeKey));
-    sums_ = Buffer(device, "buckets of instances", buckets * 8);
-    block_sums_ = Buffer(device, "prefix sums of buckets", (buckets / SCAN_BLOCK + 2) * 8);
-    unsorted_instances_ = Buffer(device, "instances by bucket", count * 4);
+    middles_ = Buffer(device_, "middles of instances", 24);
+    keys_ = Buffer(device_, "keys of instances", count * sizeof(TreeKey));
+    sums_ = Buffer(device_, "buckets of instances", buckets * 8);
+    block_sums_ = Buffer(device_, "prefix sums of buckets", (buckets / SCAN_BLOCK + 2) * 8);
+    unsorted_instances_ = Buffer(device_, "instances by bucket", count * 4);
+}
+
+void Instances::merge(const MergedBody& merged) {
+    std::vector<InstanceRole> roles(count_ + 1ull);
+    for (size_t i = 0; i < merged.instances.size(); i++)
+        roles[merged.instances[i]] = {INSTANCE_MERGED, merged.copies[i]};
+    std::vector<uint32_t> met;
+    for (uint32_t i = 0; i <= count_; i++) {
+        if (roles[i].box == INSTANCE_MERGED) continue;
+        roles[i].box = uint32_t(met.size());
+        met.push_back(i < count_ ? bodies_[i] : merged.body);
+    }
+    Commands commands(device_);
+    const InstanceInfo info{merged.body, 0, 0};
+    commands.upload(infos_, std::span(&info, 1), count_ * sizeof(InstanceInfo));
+    roles_ = Buffer(device_, "roles of instances", roles.size() * sizeof(InstanceRole));
+    commands.upload(roles_, std::span<const InstanceRole>(roles));
+    merging_ = true;
+    make_tree(met);
+}
+
+void Instances::separate() {
+    if (!std::exchange(merging_, false)) return;
+    roles_.reset();
+    make_tree(bodies_);
 }
 
 void Instances::place(Commands& commands, std::span<const GpuTransform> transforms, uint32_t first) {
@@ -77,13 +117,13 @@ uint32_t Instances::bare(const BodyTable& bodies) const {
 
 void Instances::record(Commands& commands, const BodyTable& bodies, bool hierarchy) {
     commands.begin_group("instances");
-    InstanceParams p{count(), filled(count()), 0};
+    InstanceParams p{count() + (merging_ ? 1 : 0), met(), filled(met()), 0};
     uint32_t next_bare = 0, next_cube = bare(bodies);
     for (size_t i = 0; i < few_.size(); i++)
         p.slots |= (bodies.bodies()[few_[i]].bare ? next_bare++ : next_cube++) << (4 * i);
     // The only group of a small hierarchy needs no order.
-    const Buffer& boxes = count() <= 8 ? boxes_ : unsorted_boxes_;
-    commands.run(device_.pass("instances"),
+    const Buffer& boxes = met() <= 8 ? boxes_ : unsorted_boxes_;
+    commands.run(device_.pass("instances", {{"merging", merging_}}),
                  {{"transforms", transforms_},
                   {"infos", infos_},
                   {"bodies", bodies.entries},
@@ -91,11 +131,12 @@ void Instances::record(Commands& commands, const BodyTable& bodies, bool hierarc
                   {"body_upper", bodies.upper},
                   {"instances", table_},
                   {"instance_cubes", cubes_},
-                  {"instance_boxes", boxes}},
-                 p, groups_for(p.padded, 64));
-    if (hierarchy && count() > TREE_SMALL)
+                  {"instance_boxes", boxes},
+                  Binding::if_used("roles", roles_)},
+                 p, groups_for(p.count + p.padded - p.boxes, 64));
+    if (hierarchy && met() > TREE_SMALL)
         record_large(commands);
-    else if (hierarchy && count() > 8)
+    else if (hierarchy && met() > 8)
         record_small(commands);
     commands.end_group();
 }
@@ -107,13 +148,13 @@ void Instances::record_small(Commands& commands) {
 
 void Instances::record_large(Commands& commands) {
     TreeParams p = tree_params();
-    const Groups groups = groups_for(count(), 64);
+    const Groups groups = groups_for(met(), 64);
     const uint32_t buckets = 1u << (3 * p.bits);
     commands.fill(middles_, ~0u, 0, 12);
     commands.fill(middles_, 0, 12, 12);
     commands.fill(sums_, 0, 0, uint64_t(buckets) * 8);
     commands.run(device_.pass("tree_middles"), {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}}, p,
-                 groups_for(count(), 256));
+                 groups_for(met(), 256));
     commands.run(device_.pass("tree_keys"),
                  {{"unsorted_boxes", unsorted_boxes_}, {"middles", middles_}, {"tree_keys", keys_}, {"sums", sums_}}, p,
                  groups);
@@ -133,7 +174,7 @@ void Instances::record_large(Commands& commands) {
                   {"sums", sums_},
                   {"unsorted_instances", unsorted_instances_},
                   {"instance_boxes", boxes_}},
-                 p, groups_for(filled(count()), 64));
+                 p, groups_for(filled(met()), 64));
     for (p.level = 1; p.level < tree_.levels; p.level++) {
         p.boxes = boxes_of(p.level);
         p.filled = filled(p.boxes);
@@ -143,8 +184,8 @@ void Instances::record_large(Commands& commands) {
 
 uint64_t Instances::bytes() const {
     uint64_t bytes = 0;
-    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &unsorted_boxes_, &middles_, &keys_,
-                                 &sums_, &block_sums_, &unsorted_instances_})
+    for (const Buffer* buffer : {&infos_, &transforms_, &table_, &cubes_, &boxes_, &roles_, &unsorted_boxes_, &middles_,
+                                 &keys_, &sums_, &block_sums_, &unsorted_instances_})
         bytes += buffer->bytes();
     return bytes;
 }

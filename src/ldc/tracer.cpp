@@ -1,5 +1,4 @@
 #include "ldc/tracer.h"
-#include "ldc/trace_params.h"
 
 #include <cassert>
 
@@ -28,7 +27,7 @@ static Constants walk_constants(const TracedScene& scene, HitTest test, bool cou
 
 Constants traversal_constants(const Device& device, const TracedScene& scene, HitTest test, bool counting) {
     Constants constants = walk_constants(scene, test, counting);
-    const uint32_t instances = scene.instances.count();
+    const uint32_t instances = scene.instances.met();
     constants.push_back({"instance_count", instances <= 8 ? instances : 0});
     const CubeLayout& layout = scene.cubes.layout();
     if (layout.by_pixel()) {
@@ -37,6 +36,7 @@ Constants traversal_constants(const Device& device, const TracedScene& scene, Hi
         constants.push_back({"bare_count", scene.instances.bare(scene.cubes.table)});
         constants.push_back({"deferred", device.immediate});
         constants.push_back({"refined", scene.cubes.refined});
+        constants.push_back({"merging", scene.copied != nullptr});
     }
     return constants;
 }
@@ -46,10 +46,24 @@ std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_li
                                      {"triangles", scene.triangles.triangles},
                                      Binding::if_used("instances", scene.instances.table()),
                                      Binding::if_used("instance_boxes", scene.instances.boxes()),
-                                     {"instance_cubes", scene.instances.cubes()}};
+                                     {"instance_cubes", scene.instances.cubes()},
+                                     Binding::if_used("copied", scene.copied)};
     for (const Binding& table : table_bindings(scene.cubes)) bindings.push_back(table);
     for (const Binding& other : others) bindings.push_back(other);
     return bindings;
+}
+
+TraceParams trace_params(const TracedScene& scene, const RayQueue& queue) {
+    TraceParams p{};
+    p.tree = scene.instances.tree();
+    p.count = queue.count;
+    p.counted = queue.counters != nullptr;
+    p.counter = queue.counter;
+    p.skips = queue.skip != nullptr;
+    p.block = scene.cubes.layout().block;
+    p.merged_instance = scene.instances.count();
+    p.first_copy = scene.first_copy;
+    return p;
 }
 
 void record_trace(Commands& commands, Device& device, const TracedScene& scene, const RayQueue& queue,
@@ -63,14 +77,8 @@ void record_trace(Commands& commands, Device& device, const TracedScene& scene, 
     constants.push_back({"any_hit", options.any_hit});
     constants.push_back({"precise_edges", options.edges == Edges::precise && test == HitTest::exact});
     const Pass& pass = device.pass(four ? "trace_four" : layout.by_pixel() ? "trace_pixels" : "trace", constants);
-    TraceParams p{};
-    p.tree = scene.instances.tree();
-    p.count = queue.count;
-    p.counted = queue.counters != nullptr;
-    p.counter = queue.counter;
-    p.skips = queue.skip != nullptr;
+    TraceParams p = trace_params(scene, queue);
     p.tolerance = options.tolerance;
-    p.block = scene.cubes.layout().block;
     std::vector<Binding> bindings =
         cube_bindings(scene, {{"rays", queue.rays},
                               Binding::if_used("skip", queue.skip),

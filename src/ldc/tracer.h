@@ -6,6 +6,7 @@
 #include "gpu/commands.h"
 #include "ldc/cubes.h"
 #include "ldc/instances.h"
+#include "ldc/trace_params.h"
 
 namespace peelray {
 
@@ -17,6 +18,10 @@ struct TracedScene {
     const Cubes& cubes;
     const Instances& instances;
     const TriangleBuffers& triangles;
+    /// Of triangles from `first_copy` on: uvec2 each, the instance and the triangle that they are a copy of
+    /// (Instances::merge). Null: none are.
+    const Buffer* copied = nullptr;
+    uint32_t first_copy = 0;
 };
 
 /// Where it is counted what rays cost (shaders/counting.glsl); both are added to.
@@ -52,6 +57,9 @@ Constants traversal_constants(const Device& device, const TracedScene& scene, Hi
 
 /// The bindings of shaders/ldc/cube_fetch.glsl, and `others`.
 std::vector<Binding> cube_bindings(const TracedScene& scene, std::initializer_list<Binding> others);
+
+/// The parameters of a queue, but for `tolerance`.
+TraceParams trace_params(const TracedScene& scene, const RayQueue& queue);
 
 struct TraceOptions {
     HitTest test = HitTest::exact;

@@ -24,6 +24,7 @@ void VoxelOrder::guess(BuildState& state, const BuildSize& size) {
     p.occupied_capacity = bounded(state, std::min<uint64_t>(p.cell_capacity, size.pixels / 64 + 64), 256);
     p.refine_above = state.refinement.above;
     p.refine_from = state.refinement.from;
+    p.refine_most = state.refinement.most;
 }
 
 void VoxelOrder::allocate(Commands& commands, BuildState& state) {
@@ -161,7 +162,7 @@ void VoxelOrder::record_sums(Commands& commands, const BuildState& state, uint32
 }
 
 void VoxelOrder::read(const BuildState& state, BuildCounts& counts) const {
-    if (counts.longest <= state.params.refine_from) counts.refine = 0;
+    if (counts.longest <= state.params.refine_from || counts.refine > state.params.refine_most) counts.refine = 0;
     if (counts.refine == 0 || !refined_readback_) return;
     LdcRefined refined;
     std::memcpy(&refined, refined_readback_.mapped(), sizeof refined);

@@ -21,6 +21,7 @@ struct FrameState {
     GpuScene scene;
     CameraView view;
     PathQueues queues;
+    std::unique_ptr<MergedInstances> merged;  ///< null: nothing is
     std::unique_ptr<RayTracer> tracer;
     std::unique_ptr<CubeMaps> maps;        ///< null: rays are shaded, not looked up
     std::unique_ptr<CostCounter> counter;  ///< null: nothing is counted

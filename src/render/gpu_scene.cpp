@@ -111,6 +111,7 @@ GpuScene::GpuScene(Device& device, const Scene& scene, const Moment& moment, con
       device_(device),
       placed_(assembly.instances),
       fixed_bodies_(assembly.fixed),
+      bodies_(uint32_t(assembly.bodies.size())),
       deformer_(device, scene, moment, assembly),
       generators_(device, scene, assembly),
       media_order_(peelray::media_ranks(scene)),
@@ -198,7 +199,7 @@ uint32_t GpuScene::pose(Commands& commands, const Scene& scene, const Moment& mo
 }
 
 void GpuScene::record_animation(Commands& commands, const BodyTable& bodies) {
-    bodies.record_emptying(commands, fixed_bodies_);
+    bodies.record_emptying(commands, fixed_bodies_, bodies_);
     deformer_.record(commands, bodies, triangles, normals, base_colors);
     generators_.record(commands, bodies, triangles, normals, instances);
 }

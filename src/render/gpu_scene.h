@@ -83,7 +83,7 @@ class GpuScene {
     Device& device_;
     std::vector<Assembly::Instance> placed_;
     std::vector<GpuTransform> transforms_;  ///< as they were uploaded last
-    uint32_t fixed_bodies_;
+    uint32_t fixed_bodies_, bodies_;
     Deformer deformer_;
     Generators generators_;
     MediaRanks media_order_;

@@ -25,7 +25,8 @@ RayScene::RayScene(Device& device, const Scene& scene, const Moment& moment, con
     instances_.place(commands, transforms_of(assembly.instances, moment.worlds));
     std::vector<StructureBody> structures;
     if (device.features.ray_tracing) structures = structure_bodies(scene, assembly);
-    tracer_ = make_tracer(choice, {device, triangles_, instances_, assembly, moment.worlds, structures});
+    merged_ = MergedInstances::make(device, commands, assembly, moment.worlds, choice, triangles_);
+    tracer_ = make_tracer(choice, {device, triangles_, instances_, assembly, moment.worlds, structures, merged_.get()});
     // What deforms lies in the assembly as it is now.
     tracer_->build(
         commands, [] {}, build_);

@@ -40,6 +40,7 @@ class RayScene {
     BaseColorBuffers base_colors_;  ///< only where a material is masked or single-sided
     Buffer triangle_ids_, hits_;
     Instances instances_;
+    std::unique_ptr<MergedInstances> merged_;
     std::unique_ptr<RayTracer> tracer_;
     FrameMeter build_;
 };

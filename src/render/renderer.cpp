@@ -153,8 +153,9 @@ void Renderer::Impl::prepare_tracer() {
         choice.tracer = Tracer::none;
     if (!f.tracer || made_for != choice) {
         f.tracer.reset();  // first, so that both never live at once
-        f.tracer = make_tracer(
-            choice, {f.device, f.scene.triangles, f.scene.instances, assembly, moment.worlds, structure_bodies});
+        f.merged = MergedInstances::make(f.device, f.commands, assembly, moment.worlds, choice, f.scene.triangles);
+        f.tracer = make_tracer(choice, {f.device, f.scene.triangles, f.scene.instances, assembly, moment.worlds,
+                                        structure_bodies, f.merged.get()});
         f.tracer->pose(moved > 0);
         made_for = choice;
     }

@@ -19,6 +19,8 @@ struct CubeChoice {
     float fineness = 1;
     /// Voxels with more samples become finer ones; none: chosen. No hit depends on it.
     std::optional<uint32_t> refine;
+    /// Of moving objects with at most so many triangles copies share a cube (MergedInstances); none: chosen.
+    std::optional<uint32_t> merge;
     bool may_be_planar = false;  ///< `hit`, exact, was chosen: planar hits may take its place
     HitTest hit = HitTest::exact;
     bool ldc_each = false;     ///< `ldc` voxels for every body, not only for the largest
@@ -64,6 +66,8 @@ class SceneCubes {
     struct Stats {
         uint32_t bodies = 0, fixed = 0;  ///< fixed: built once
         uint32_t bare = 0;               ///< of the bodies, those without a cube (CubeBody::bare)
+        uint32_t merged = 0;             ///< instances that share the last body's cube (MergedInstances)
+        uint64_t merged_triangles = 0;   ///< of that cube
         uint32_t cubes() const { return bodies - bare; }
         uint32_t resolution = 0;  ///< what was asked for, or the largest of all
         CubeChoice choice;        ///< what they were built with

@@ -37,6 +37,8 @@ inline constexpr Limits kResolutionLimits{
     .least = 16, .most = 2048, .fault = "an LDI resolution of {} is out of range", .choose = "16 to 2048, or auto"};
 inline constexpr Limits kRefineLimits{
     .least = 1, .most = 1e9, .fault = "a list of {} samples is none", .choose = "1 or more, or auto"};
+inline constexpr Limits kMergeLimits{
+    .least = 0, .most = 1e9, .fault = "{} triangles are out of range", .choose = "0 or more, or auto"};
 inline constexpr Limits kBlockLimits{
     .least = 2, .most = 32, .fault = "a block of {} pixels is out of range", .choose = "2 to 32 a side"};
 inline constexpr Limits kBounceLimits{.least = 0, .most = 16, .fault = "{} bounces are too many", .choose = "0 to 16"};

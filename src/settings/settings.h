@@ -184,6 +184,7 @@ struct TracingArguments {
     std::optional<HitTest> hit;      ///< none: chosen by the number of triangles
     std::optional<uint32_t> ldc;     ///< none: chosen for each part
     std::optional<uint32_t> refine;  ///< none: by what is built once, what for every frame, and the device
+    std::optional<uint32_t> merge;   ///< triangles; none: chosen
     double tolerance = 0.001;
     std::optional<BuilderKind> builder;  ///< none: compute
     Routing routing = Routing::geometry;
@@ -226,6 +227,16 @@ inline void add_refine(SettingList& list, std::optional<uint32_t>& refine, Setti
     add_setting(list, refine, std::move(info));
 }
 
+inline void add_merge(SettingList& list, std::optional<uint32_t>& merge, SettingInfo info) {
+    info.name = "merge";
+    info.form = "auto|N";
+    info.expected = "auto or a number of triangles from 0 up";
+    info.none = "auto";
+    info.limits = kMergeLimits;
+    info.of_cubes = true;
+    add_setting(list, merge, std::move(info));
+}
+
 inline constexpr Limits kToleranceLimits{
     .least = 0, .open = true, .fault = "a tolerance of {} is impossible", .choose = "a distance above 0"};
 
@@ -243,6 +254,10 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .of_cubes = true});
     add_refine(list, a.refine,
                {.group = group, .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones"});
+    add_merge(list, a.merge,
+              {.group = group,
+               .help = "with --hit exact, many objects that move by themselves share a cube, which is built anew for "
+                       "every frame: those of at most N triangles; 0: none do"});
     add_setting(list, a.tolerance,
                 {.name = "tolerance",
                  .group = group,

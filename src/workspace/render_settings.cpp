@@ -11,6 +11,7 @@ void choose_tracing(RenderSettings& settings, const TracingArguments& tracing) {
     CubeLayout& layout = settings.cubes.layout;
     settings.cubes.ldc = tracing.ldc.value_or(0);
     settings.cubes.refine = tracing.refine;
+    settings.cubes.merge = tracing.merge;
     settings.cubes.tolerance = float(tracing.tolerance);
     layout.traversal = tracing.traversal;
     layout.block = tracing.block;

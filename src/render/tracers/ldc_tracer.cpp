@@ -1,5 +1,7 @@
 #include "render/tracers/ldc_tracer.h"
 
+#include <utility>
+
 #include "render/transforms.h"
 
 namespace peelray {
@@ -8,23 +10,61 @@ LdcTracer::LdcTracer(const TracedWorld& world, const TracerChoice& choice)
     : device_(world.device),
       triangles_(world.triangles),
       instances_(world.instances),
+      may_merge_(world.merged),
+      merged_(nullptr),
       scales_(smallest_scales(world.assembly, world.worlds)),
       first_choice_(choice.cubes),
       fixed_bodies_(choice.fixed_bodies(world.assembly)),
       shown_(world.assembly.bodies.size()) {
     assembly_.bodies = world.assembly.bodies;
     for (const Assembly::Instance& instance : world.assembly.instances) shown_[instance.body]++;
+    merge(true);
     make(first_choice_);
+}
+
+/// Those that come after it see every instance for itself.
+LdcTracer::~LdcTracer() {
+    instances_.separate();
+}
+
+void LdcTracer::merge(bool on) {
+    merged_ = on ? may_merge_ : nullptr;
+    if (merged_)
+        instances_.merge(merged_->merged());
+    else
+        instances_.separate();
 }
 
 void LdcTracer::make(const CubeChoice& choice) {
     cubes_.reset();  // first, so that both never live at once
-    cubes_ = std::make_unique<SceneCubes>(device_, assembly_, choice, fixed_bodies_, scales_);
+    Assembly assembly = assembly_;
+    std::vector<float> scales = scales_;
+    uint32_t fixed = fixed_bodies_;
+    if (merged_) {
+        if (!merged_->moves() && fixed == assembly.bodies.size()) fixed++;
+        assembly.bodies.push_back(merged_->body());
+        scales.push_back(1);
+    }
+    cubes_ = std::make_unique<SceneCubes>(device_, assembly, choice, fixed, scales);
+    copied_ = false;
+}
+
+TracedScene LdcTracer::traced() const {
+    TracedScene scene{cubes_->cubes(), instances_, triangles_};
+    if (merged_) {
+        scene.copied = &merged_->copied();
+        scene.first_copy = merged_->body().first_triangle;
+    }
+    return scene;
 }
 
 /// Throws Error where nothing smaller may be made.
 void LdcTracer::make_smaller(const NoRoom& error) {
     const CubeChoice failed = choice();
+    if (merged_) {
+        merge(false);
+        return make(failed);
+    }
     if (no_room_.empty()) no_room_ = error.reason();
     if (const std::optional<CubeChoice> smaller = smaller_than(failed)) return make(*smaller);
     const std::string found = fmt::format("{}, for {} hits at N = {}{}", no_room_, name_of(first_choice_.hit),
@@ -44,6 +84,7 @@ void LdcTracer::build(Commands& commands, const std::function<void()>& animate, 
     const bool deforms = cubes_->fixed() < bodies().bodies().size();
     if (!fits_ && deforms && !no_room_.empty()) {
         no_room_.clear();
+        merge(true);
         make(first_choice_);
     }
     for (;; meter.redone++) {
@@ -57,6 +98,7 @@ void LdcTracer::build(Commands& commands, const std::function<void()>& animate, 
 
 void LdcTracer::build_once(Commands& commands, const std::function<void()>& animate, FrameMeter& meter) {
     rebuilt_ = uint32_t(bodies().bodies().size()) - cubes_->fixed();
+    if (builds_once() && !std::exchange(copied_, true)) record_copies(commands);
     if (cubes_->build_fixed(commands, triangles_)) {
         meter.add(commands);
         meter.redone += cubes_->stats().redone;
@@ -75,7 +117,12 @@ void LdcTracer::build_once(Commands& commands, const std::function<void()>& anim
     }
 }
 
+void LdcTracer::record_copies(Commands& commands) {
+    if (merged_) merged_->record(commands, bodies(), triangles_, instances_);
+}
+
 void LdcTracer::record_rebuild(Commands& commands) {
+    if (!builds_once()) record_copies(commands);
     cubes_->record(commands, triangles_);
     instances_.record(commands, bodies());
 }
@@ -86,14 +133,8 @@ void LdcTracer::trace(Commands& commands, const RayQueue& queue, const Buffer& h
 }
 
 TraceParams LdcTracer::params(const RayQueue& queue) const {
-    TraceParams p{};
-    p.tree = instances_.tree();
-    p.count = queue.count;
-    p.counted = queue.counters != nullptr;
-    p.counter = queue.counter;
-    p.skips = queue.skip != nullptr;
+    TraceParams p = trace_params(traced(), queue);
     p.tolerance = tolerance();
-    p.block = choice().layout.block;
     return p;
 }
 
@@ -156,12 +197,18 @@ void LdcTracer::describe(Frame& frame) const {
 void LdcTracer::describe(Commands& commands, TracerStats& stats) const {
     stats.cubes = cubes_->stats();
     stats.cubes.no_room = no_room_;
+    if (merged_) {
+        stats.cubes.merged = uint32_t(merged_->merged().instances.size());
+        stats.cubes.merged_triangles = merged_->body().triangles;
+        stats.cubes.bytes += merged_->bytes();
+    }
     if (!no_room_.empty()) {
         stats.cubes.no_room_hit = first_choice_.hit;
         stats.cubes.no_room_resolution = largest_resolution(assembly_, first_choice_, fixed_bodies_);
     }
     stats.bodies = bodies().download(commands);
     stats.shown = shown_;
+    if (merged_) stats.shown.push_back(1);
     stats.rebuilt = rebuilt_;
 }
 

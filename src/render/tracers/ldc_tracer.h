@@ -12,6 +12,7 @@ namespace peelray {
 class LdcTracer : public RayTracer {
   public:
     LdcTracer(const TracedWorld& world, const TracerChoice& choice);
+    ~LdcTracer() override;
 
     /// Of the last build(): the next one may make others.
     const SceneCubes& cubes() const { return *cubes_; }
@@ -30,23 +31,32 @@ class LdcTracer : public RayTracer {
     void describe(Commands& commands, TracerStats& stats) const override;
 
   private:
-    TracedScene traced() const { return {cubes_->cubes(), instances_, triangles_}; }
+    TracedScene traced() const;
     const CubeChoice& choice() const { return cubes_->choice(); }
     TraceParams params(const RayQueue& queue) const;
     /// World units; 0 of other hits.
     float tolerance() const { return choice().hit == HitTest::tolerance ? choice().tolerance : 0; }
 
     void make(const CubeChoice& choice);
+    /// Is there nothing to build for every frame?
+    bool builds_once() const { return cubes_->fixed() == bodies().bodies().size(); }
+    /// Copies move to where their instances stand.
+    void record_copies(Commands& commands);
+    /// Uses the copies, if they are there, or not.
+    void merge(bool on);
     void make_smaller(const NoRoom& error);
     void build_once(Commands& commands, const std::function<void()>& animate, FrameMeter& meter);
 
     Device& device_;
     const TriangleBuffers& triangles_;
     Instances& instances_;
-    Assembly assembly_;  ///< its bodies
+    Assembly assembly_;  ///< its bodies, without those of copies
+    const MergedInstances* const may_merge_;
+    const MergedInstances* merged_;  ///< null: no copies are used
     std::vector<float> scales_;
     const CubeChoice first_choice_;
     const uint32_t fixed_bodies_;
+    bool copied_ = false;  ///< the copies have been where instances stand
     std::unique_ptr<SceneCubes> cubes_;
     std::string no_room_;          ///< why `cubes_` are not of the first choice; empty: they are
     std::vector<uint32_t> shown_;  ///< instances of each body

@@ -7,6 +7,7 @@
 
 #include "ldc/tracer.h"
 #include "render/measuring.h"
+#include "render/merged_instances.h"
 #include "render/tracers/structure_bodies.h"
 #include "render/tracers/tracer_choice.h"
 
@@ -21,6 +22,8 @@ struct TracedWorld {
     const std::vector<glm::mat4>& worlds;  ///< of all nodes, at some moment
     /// Of each body, for the device's own ray tracing; empty where the device has none.
     const std::vector<StructureBody>& structures;
+    /// Of many small bodies copies that share a cube, which `ldc` may use; null: there are none.
+    const MergedInstances* merged = nullptr;
 };
 
 /// The shadow rays of all levels of a band.
