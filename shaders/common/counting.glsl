@@ -17,6 +17,12 @@ uint counted_ray = 0u;
 #define COUNT_EACH(statement) \
     statement(steps) statement(cells) statement(pixels) statement(samples) statement(triangles)
 
+uint countBucket(uint count) {
+    if (count < COUNT_EQUAL) return count;
+    const uint power = uint(findMSB(count));
+    return COUNT_EQUAL + (power - 8u) * 32u + (count >> (power - 5u) & 31u);
+}
+
 /// Before a ray is traced.
 void countNothing() {
     if (!counting) return;
@@ -34,4 +40,8 @@ void countRay(uint kind, uint k, uint i) {
     atomicMax(count_totals[kind].largest.what, counts[k].what);
     COUNT_EACH(COUNT_ADD)
 #undef COUNT_ADD
+    uint field = 0u;
+#define COUNT_INTO_BUCKET(what) atomicAdd(count_totals[kind].buckets[COUNT_BUCKETS * field++ + countBucket(counts[k].what)], 1u);
+    COUNT_EACH(COUNT_INTO_BUCKET)
+#undef COUNT_INTO_BUCKET
 }

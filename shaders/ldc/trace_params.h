@@ -31,14 +31,20 @@ struct TraceParams {
 };
 SHARED_SIZE(TraceParams, 76);
 
+/// Rays that cost equally much, or above COUNT_EQUAL nearly so, are counted together: 32 buckets for each power of two.
+#define COUNT_EQUAL 256u
+#define COUNT_BUCKETS 1024u
+#define COUNT_FIELDS 5u
+
 /// What the rays of one kind cost in all (shaders/common/counting.glsl).
 struct CountTotals {
     uint rays;
     PeelrayCounts low;  ///< of sums in 64 bits
     PeelrayCounts high;
-    PeelrayCounts largest;  ///< of a single ray
+    PeelrayCounts largest;                      ///< of a single ray
+    uint buckets[COUNT_FIELDS * COUNT_BUCKETS];  ///< rays in each, field by field in the order of PeelrayCounts
 };
-SHARED_SIZE(CountTotals, 64);
+SHARED_SIZE(CountTotals, 20544);
 #define COUNT_TRACED 0u  // what `trace` traces: reflection and refraction, the rays of a file
 #define COUNT_SHADOW 1u  // to the lamps and to the sky
 #define COUNT_KINDS 2u

@@ -19,10 +19,10 @@ namespace setting {
 inline constexpr Setting animation{"animation"}, background{"background"}, batch{"batch"}, block{"block"},
     bounces{"bounces"}, builder{"builder"}, camera{"camera"}, caustics{"caustics"}, clamp{"clamp"}, depth{"depth"},
     device{"device"}, double_sided{"double-sided"}, effects{"effects"}, env_visible{"env-visible"}, eye{"eye"},
-    fov{"fov"}, gi{"gi"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, noise_target{"noise-target"}, routing{"routing"},
-    shadow_catcher{"shadow-catcher"}, size{"size"}, spp{"spp"}, time{"time"}, time_limit{"time-limit"},
-    tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"}, validate{"validate"},
-    variant{"variant"}, visibility{"visibility"};
+    fov{"fov"}, gi{"gi"}, hit{"hit"}, ldc{"ldc"}, look{"look"}, memory_limit{"memory-limit"},
+    noise_target{"noise-target"}, routing{"routing"}, shadow_catcher{"shadow-catcher"}, size{"size"}, spp{"spp"},
+    time{"time"}, time_limit{"time-limit"}, tolerance{"tolerance"}, tracer{"tracer"}, traversal{"traversal"}, up{"up"},
+    validate{"validate"}, variant{"variant"}, visibility{"visibility"};
 }  // namespace setting
 
 /// Around the name of a setting in the text of an Error. A front end that prints the text replaces both.

@@ -13,7 +13,7 @@ static constexpr uint32_t kWarmUpOfChoice = 3;
 AutoCheck::AutoCheck(const BenchSettings& settings, Notes notes)
     : settings_(settings),
       notes_(std::move(notes)),
-      device_(DeviceOptions{settings.device.device, settings.device.validate}) {
+      device_(DeviceOptions{settings.device.device, settings.device.validate, settings.device.most_held()}) {
     check_timestamps(device_);
 }
 

@@ -9,6 +9,7 @@
 #include "bench/timing.h"
 #include "common/ray.h"
 #include "ldc/trace_params.h"
+#include "render/cost_counter.h"
 
 namespace peelray {
 
@@ -45,6 +46,8 @@ class RayContender {
     virtual Timing time_trace(bool any_hit, uint32_t runs) = 0;
     /// What the last run of time_trace() found, for each ray: only whether it hit something, if that was `any_hit`.
     virtual std::vector<FileHit> answers() = 0;
+    /// What the rays cost, counted apart; none: nobody counts.
+    virtual std::optional<KindCosts> costs(bool /*any_hit*/) { return std::nullopt; }
     /// How the rays were traced, if there was a choice.
     virtual std::string way() const { return {}; }
 

@@ -56,6 +56,24 @@ Timing GpuContender::time_trace(bool any_hit, uint32_t runs) {
     return time_submissions(runs, record, [] { return true; });
 }
 
+KindCosts GpuContender::count_costs(bool any_hit) {
+    const CostTotals totals(device_);
+    AllKindCosts sums;
+    for (const Batch& batch : batches_) {
+        const Buffer costs(device_, "costs", batch.count * sizeof(RayCosts));
+        const CountBuffers counting{costs, totals.buffer()};
+        RayQueue queue{batch.rays, nullptr, batch.count};
+        queue.counting = &counting;
+        totals.record_clear(commands_);
+        commands_.fill(costs, 0);
+        record_hits(commands_, queue, batch.hits, any_hit);
+        totals.record_readback(commands_);
+        commands_.submit();
+        totals.add_to(sums);
+    }
+    return sums[COUNT_TRACED];
+}
+
 std::vector<FileHit> GpuContender::answers() {
     std::vector<FileHit> all;
     for (const Batch& batch : batches_) {

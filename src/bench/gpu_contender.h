@@ -32,6 +32,9 @@ class GpuContender : public RayContender {
     ClockProbe& probe_;
     Commands commands_;
 
+    /// Traces all rays once more and counts what they cost.
+    KindCosts count_costs(bool any_hit);
+
   private:
     /// As many rays as the device binds at once.
     struct Batch {

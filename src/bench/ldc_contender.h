@@ -17,6 +17,7 @@ class LdcContender : public GpuContender {
     float start_offset(uint32_t triangle) const override;
     double voxel() const override { return voxel_; }
     MemoryUse memory() const override;
+    std::optional<KindCosts> costs(bool any_hit) override { return count_costs(any_hit); }
 
     SceneCubes::Stats stats() const { return cubes_.stats(); }
 

@@ -106,7 +106,7 @@ void MeasuredScene::measure(RayContender& contender, uint32_t resolution, RayRow
     row.refit = contender.time_refit(repeat_);
     for (const RayKind kind : kinds_) {
         const std::vector<SurfaceRay>& set = sets_[size_t(kind)];
-        TracedSet traced{kind, set.size(), {}, {}, {}};
+        TracedSet traced{kind, set.size(), {}, {}, {}, {}};
         if (!set.empty()) {
             const std::vector<Ray> rays = started(contender, set);
             contender.take(rays);
@@ -114,6 +114,7 @@ void MeasuredScene::measure(RayContender& contender, uint32_t resolution, RayRow
             traced.way = contender.way();
             traced.judged =
                 judge(oracle_, scene_.geometry(), contender, resolution, rays, contender.answers(), is_any_hit(kind));
+            traced.costs = contender.costs(is_any_hit(kind));
         }
         row.sets.push_back(traced);
     }
@@ -192,7 +193,7 @@ RayBench::RayBench(const BenchSettings& settings, Notes notes)
     : settings_(settings),
       notes_(std::move(notes)),
       kinds_(sorted(settings.rays)),
-      device_(DeviceOptions{settings.device.device, settings.device.validate}) {
+      device_(DeviceOptions{settings.device.device, settings.device.validate, settings.device.most_held()}) {
     check_timestamps(device_);
     // Of planar hits, auto is too fine for a software device in a hurry.
     if (settings.quick)

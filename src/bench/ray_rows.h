@@ -7,6 +7,7 @@
 
 #include "bench/judge.h"
 #include "reference/ray_sets.h"
+#include "render/cost_counter.h"
 
 namespace peelray {
 
@@ -16,7 +17,8 @@ struct TracedSet {
     size_t rays = 0;
     Timing time;
     Judgement judged;
-    std::string way;  ///< how they were traced, if there was a choice
+    std::string way;                 ///< how they were traced, if there was a choice
+    std::optional<KindCosts> costs;  ///< of ours
 
     bool counts() const { return judged.passes() && time.runs > 0; }
     double mrays_per_second() const { return time.median > 0 ? double(rays) / time.median * 1e-3 : 0; }

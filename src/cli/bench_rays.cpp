@@ -34,6 +34,7 @@ static Json set_json(const TracedSet& set) {
     json["trace_ms"] = set.counts() ? timing_json(set.time) : Json(nullptr);
     json["mrays_per_second"] = set.counts() ? Json(set.mrays_per_second()) : Json(nullptr);
     if (!set.way.empty()) json["way"] = set.way;
+    if (set.costs) json["costs"] = kind_costs_json(*set.costs);
     return json;
 }
 
@@ -161,6 +162,29 @@ std::string ratio_table(const std::vector<RayRow>& rows, const std::vector<RayKi
         names, rule, body);
 }
 
+std::string costs_table(const std::vector<RayRow>& rows) {
+    std::string body, names, rule;
+    for (const RayCostField& field : kRayCostFields) {
+        names += fmt::format(" {} |", field.name);
+        rule += "---:|";
+    }
+    for (const RayRow& row : rows)
+        for (const TracedSet& set : row.sets) {
+            if (!set.costs) continue;
+            body += fmt::format("| {} | {}x{} | {} | {} |", row.scene, row.size.x, row.size.y, row.label(),
+                                name_of(set.kind));
+            for (size_t i = 0; i < kRayCostFields.size(); i++)
+                body += fmt::format(" {} / {} / {} |", set.costs->percentile(i, 0.5), set.costs->percentile(i, 0.99),
+                                    set.costs->largest.*kRayCostFields[i].value);
+            body += "\n";
+        }
+    if (body.empty()) return body;
+    return fmt::format(
+        "\nWhat a ray costs: 50 of 100 rays at most, 99 of 100, and the dearest\n\n"
+        "| scene | picture | ours | rays |{}\n|---|---|---|---|{}\n{}",
+        names, rule, body);
+}
+
 // ---- The run
 
 static Json ray_head_json(const BenchArguments& a, const Machine& machine) {
@@ -197,6 +221,7 @@ void run_ray_bench(const BenchArguments& a) {
         [&](bool) {
             output.say(ray_table_foot());
             output.say(ratio_table(rows, bench.kinds()));
+            output.say(costs_table(rows));
             if (!a.plots.empty()) write_plots(a.plots, rows);
         });
 }

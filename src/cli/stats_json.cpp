@@ -99,18 +99,22 @@ static Json cubes_json(const SceneCubes::Stats& cubes, const std::vector<LdcBody
     return json;
 }
 
-/// What rays of some kinds cost, named by `names`: means and the most of a single ray.
+Json kind_costs_json(const KindCosts& cost) {
+    Json mean, half, most, largest;
+    for (size_t i = 0; i < kRayCostFields.size(); i++) {
+        const char* name = kRayCostFields[i].name;
+        mean[name] = cost.mean(i);
+        half[name] = cost.percentile(i, 0.5);
+        most[name] = cost.percentile(i, 0.99);
+        largest[name] = cost.largest.*kRayCostFields[i].value;
+    }
+    return {{"rays", cost.rays}, {"mean", mean}, {"p50", half}, {"p99", most}, {"largest", largest}};
+}
+
+/// What rays of some kinds cost, named by `names`.
 static Json costs_json(const AllKindCosts& costs, std::span<const char* const> names) {
     Json json = {{"times", "counting slows the rays: the times here are not to be trusted"}};
-    for (size_t kind = 0; kind < names.size(); kind++) {
-        const KindCosts& cost = costs[kind];
-        Json mean, largest;
-        for (size_t i = 0; i < kRayCostFields.size(); i++) {
-            mean[kRayCostFields[i].name] = cost.mean(i);
-            largest[kRayCostFields[i].name] = cost.largest.*kRayCostFields[i].value;
-        }
-        json[names[kind]] = {{"rays", cost.rays}, {"mean", mean}, {"largest", largest}};
-    }
+    for (size_t kind = 0; kind < names.size(); kind++) json[names[kind]] = kind_costs_json(costs[kind]);
     return json;
 }
 
@@ -232,6 +236,7 @@ static void add_render_json(Json& json, const PictureStats& stats) {
     }
     if (s.counted) json["counters"] = picture_costs_json(stats);
     if (s.tracer == Tracer::cubemap) json["cubemap"] = maps_json(s);
+    json["bands"] = {{"count", s.bands}, {"rows", s.band_rows}};
     json["visibility"] = s.visibility == Visibility::compute ? "compute" : "raster";
     if (s.tracer == Tracer::khr) json["khr"] = structures_json(s.structures, s.update);
     json["hit"] = stats.has_cubes() ? name_of(s.hit) : "none";

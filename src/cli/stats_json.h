@@ -17,6 +17,8 @@ nlohmann::ordered_json trace_json(const TraceStats& stats);
 
 /// Parts of a picture's: rays by kind; cubes (the first 64 one by one), null where none traced; bytes by structure.
 nlohmann::ordered_json rays_json(const RayCounts& rays);
+/// What the rays of a kind cost: mean, 50th and 99th percentile and the most of a single ray, by kRayCostFields.
+nlohmann::ordered_json kind_costs_json(const KindCosts& cost);
 nlohmann::ordered_json cubes_json(const PictureStats& stats);
 nlohmann::ordered_json memory_bytes_json(const RenderStats& stats);
 

@@ -10,7 +10,6 @@ namespace {
 // Indirect arguments are read in a stage of their own.
 constexpr VkPipelineStageFlags2 kCompute =
     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
-constexpr uint64_t kStagingBytes = 64ull << 20;  // larger copies go in pieces
 
 }  // namespace
 
@@ -209,7 +208,7 @@ void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> dat
     submit();
     const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
-        const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
+        const uint64_t bytes = std::min<uint64_t>(data.size() - done, device_.staging_bytes());
         if (!staging_up_ || staging_up_.bytes() < bytes)
             staging_up_ = Buffer(device_, "upload staging", bytes, Buffer::Where::upload);
         std::memcpy(staging_up_.mapped(), data.data() + done, bytes);
@@ -222,7 +221,7 @@ void Commands::upload_bytes(const Buffer& buffer, std::span<const std::byte> dat
 void Commands::upload(const Image2D& image, std::span<const uint32_t> texels, uint64_t first_row) {
     submit();
     const MemoryPart part(device_, "staging");
-    const uint64_t width = image.width(), most_rows = std::max<uint64_t>(1, kStagingBytes / (4 * width));
+    const uint64_t width = image.width(), most_rows = std::max<uint64_t>(1, device_.staging_bytes() / (4 * width));
     for (uint64_t row = first_row; !texels.empty();) {
         // Whole rows, then what is left of the last one: a copy is a rectangle of one layer.
         const uint64_t left = image.height() - row % image.height(), rows = std::min(most_rows, left);
@@ -261,7 +260,7 @@ void Commands::download_bytes(const Buffer& buffer, std::span<std::byte> data, u
     submit();
     const MemoryPart part(device_, "staging");
     for (uint64_t done = 0; done < data.size();) {
-        const uint64_t bytes = std::min<uint64_t>(data.size() - done, kStagingBytes);
+        const uint64_t bytes = std::min<uint64_t>(data.size() - done, device_.staging_bytes());
         if (!staging_down_ || staging_down_.bytes() < bytes)
             staging_down_ = Buffer(device_, "readback staging", bytes, Buffer::Where::readback);
         copy(buffer, staging_down_, bytes, offset + done, 0);

@@ -188,6 +188,8 @@ void Device::lower_limits(const DeviceOptions& options) {
     uint32_t& bound = properties_.limits.maxStorageBufferRange;
     bound = uint32_t(lowered(bound, options.most_bound, bytes_from("PEELRAY_MOST_BOUND")));
     most_held_ = lowered(~0ull, options.most_held, bytes_from("PEELRAY_MOST_HELD"));
+    memory_limit_ = options.memory_limit;
+    if (memory_limit_ > 0) most_held_ = std::min(most_held_, memory_limit_);
 }
 
 Device::~Device() {
@@ -279,11 +281,16 @@ VkDeviceMemory Device::allocate_uncounted(const VkMemoryRequirements& needs, VkM
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
                                 VkMemoryPropertyFlags nice, std::string_view what, bool addressed) {
     const auto no_room = [&] {
+        if (memory_limit_ > 0 && needs.size > room())
+            return NoRoom(
+                fmt::format("{} {} has no room for another {:.1f} MiB, {} ({:.1f} MiB are held)", setting::memory_limit,
+                            memory_limit_ >> 20, double(needs.size) / (1 << 20), what, double(allocated_) / (1 << 20)),
+                room_advice());
         return NoRoom(fmt::format("the memory of the device '{}' has no room for another {:.0f} MiB, {}", info_.name,
                                   double(needs.size) / (1 << 20), what),
                       room_advice());
     };
-    if (needs.size > most_held_ - std::min(allocated_, most_held_)) throw no_room();
+    if (needs.size > room()) throw no_room();
     VkDeviceMemory memory = VK_NULL_HANDLE;
     try {
         memory = allocate_uncounted(needs, wanted, nice, what, addressed);
@@ -302,8 +309,19 @@ void Device::release(VkDeviceMemory memory, uint64_t size) {
     std::erase_if(held_, [&](const auto& entry) { return entry.first == memory; });
 }
 
+uint64_t Device::staging_bytes() const {
+    constexpr uint64_t usual = 64ull << 20, least = 1ull << 16;
+    return most_held_ == ~0ull ? usual : std::clamp<uint64_t>(most_held_ / 64 & ~0xffull, least, usual);
+}
+
 std::string Device::room_advice() const {
     const std::string_view part = part_;
+    if (memory_limit_ > 0) {
+        const std::string more = fmt::format("raise {}, or ", setting::memory_limit);
+        if (part == "frame" || part == "images") return more + fmt::format("choose a smaller {}", setting::size);
+        if (part == "cubes" || part == "build scratch") return more + fmt::format("use a smaller {}", setting::ldc);
+        return more + fmt::format("use {} cpu, which needs none", setting::tracer);
+    }
     if (part == "frame" || part == "images")
         return fmt::format("choose a smaller {}, or another {}", setting::size, setting::device);
     if (part == "cubes" || part == "build scratch")

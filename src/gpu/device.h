@@ -38,6 +38,7 @@ struct DeviceOptions {
     std::string select;     ///< index or part of the name (case-insensitive); empty: the first of discrete, integrated,
                             ///< virtual, CPU
     bool validate = false;  ///< Vulkan validation layers; every message is collected (Device::validation_messages)
+    uint64_t memory_limit = 0;  ///< bytes held by buffers and images at most; 0: as many as there are
     /// For tests of what happens at the limits of a device: it is taken to bind, and to hold, only so many bytes; 0: as
     /// many as it does. PEELRAY_MOST_BOUND and PEELRAY_MOST_HELD in the environment set them for whole programs.
     uint64_t most_bound = 0, most_held = 0;
@@ -120,6 +121,10 @@ class Device {
     /// Each piece of it, in the order in which they were made: what is held now, and what was at the peak.
     std::vector<Allocation> allocations() const;
     const std::vector<Allocation>& peak_allocations() const { return at_peak_; }
+    /// Bytes that may still be held; ~0: nobody knows.
+    uint64_t room() const { return most_held_ == ~0ull ? most_held_ : most_held_ - std::min(allocated_, most_held_); }
+    /// Bytes of a piece of a copy between host and device, of those that are too large for one.
+    uint64_t staging_bytes() const;
     /// What to do where there is no room for what is being made: it depends on the part of the program.
     std::string room_advice() const;
     /// Starts counting the peak again from what is allocated now.
@@ -171,6 +176,7 @@ class Device {
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     std::vector<std::string> validation_messages_;
     uint64_t allocated_ = 0, peak_allocated_ = 0, most_held_ = ~0ull;
+    uint64_t memory_limit_ = 0;  ///< DeviceOptions::memory_limit
     std::vector<std::pair<VkDeviceMemory, Allocation>> held_;
     std::vector<Allocation> at_peak_;
     const char* part_ = "other";

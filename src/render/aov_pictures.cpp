@@ -25,8 +25,8 @@ void AovPictures::render(FrameState& f, Aovs& aovs) {
         record_primary(f.commands, device, f.scene, f.view.target, f.queues, p, f.view.by_number());
         f.commands.run(device.pass("aov", {f.scene.base_colors.constant()}),
                        surface_bindings(f.scene, f.view.target.frame,
-                                        {{"rays", f.queues.level(0).rays},
-                                         {"hits", f.queues.level(0).hits},
+                                        {{"rays", f.queues.level(0).traced->rays},
+                                         {"hits", f.queues.level(0).traced->hits},
                                          {"aovs", buffer_},
                                          {"triangle_ids", f.scene.triangle_ids},
                                          {"triangle_objects", f.scene.triangle_objects}}),

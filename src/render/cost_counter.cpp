@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
 
 namespace peelray {
+
+uint32_t KindCosts::percentile(size_t field, double share) const {
+    const auto wanted = uint64_t(std::ceil(share * double(rays)));
+    uint64_t below = 0;
+    for (uint32_t i = 0; i < COUNT_BUCKETS && !buckets.empty(); i++) {
+        below += buckets[field * COUNT_BUCKETS + i];
+        if (below < wanted) continue;
+        // The most that a ray of the bucket costs.
+        const uint32_t power = (i - COUNT_EQUAL) / 32 + 3, most = ((32 + (i - COUNT_EQUAL) % 32 + 1) << power) - 1;
+        return std::min(i < COUNT_EQUAL ? i : most, largest.*kRayCostFields[field].value);
+    }
+    return 0;
+}
 
 CostTotals::CostTotals(Device& device)
     : totals_(device, "costs of rays by kind", COUNT_KINDS * sizeof(CountTotals)),
@@ -29,6 +43,8 @@ void CostTotals::add_to(AllKindCosts& sums) const {
             sum.sums[i] += uint64_t(high.*value) << 32 | low.*value;
             sum.largest.*value = std::max(sum.largest.*value, largest.*value);
         }
+        sum.buckets.resize(COUNT_FIELDS * COUNT_BUCKETS);
+        for (size_t i = 0; i < sum.buckets.size(); i++) sum.buckets[i] += counted.buckets[i];
     }
 }
 

@@ -17,8 +17,11 @@ struct KindCosts {
     uint64_t rays = 0;
     std::array<uint64_t, kRayCostFields.size()> sums{};  ///< in the order of kRayCostFields
     RayCosts largest;                                    ///< of a single ray
+    std::vector<uint64_t> buckets;                       ///< as CountTotals has them; empty: no rays
 
     double mean(size_t field) const { return rays ? double(sums[field]) / double(rays) : 0; }
+    /// What at least `share` of the rays, above 0, cost at most; from COUNT_EQUAL on up to 3 % too much.
+    uint32_t percentile(size_t field, double share) const;
 };
 
 /// By kind, COUNT_TRACED, ...

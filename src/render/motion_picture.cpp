@@ -14,7 +14,7 @@ void MotionPicture::record(FrameState& f, const LevelParams& band) const {
                     {"positions", f.scene.triangles.positions},
                     {"triangles", f.scene.triangles.triangles},
                     {"instances", f.scene.instances.table()},
-                    {"hits", f.queues.level(0).hits},
+                    {"hits", f.queues.level(0).traced->hits},
                     Binding::if_used("positions_before", f.before.positions()),
                     {"transforms_before", f.before.transforms()},
                     {"motions", motions_}},

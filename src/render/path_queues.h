@@ -2,6 +2,7 @@
 // of all levels.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -10,12 +11,23 @@
 
 namespace peelray {
 
+/// Rays and what they hit.
+struct PathRays {
+    uint32_t capacity = 0;
+    Buffer rays, states, skip, hits;
+    Buffer media, walls;  ///< MediaStack and MediaWall each; only while media may overlap
+
+    uint64_t bytes() const;
+};
+
 /// A level's rays, their hits and the tree's nodes; entry i of each belongs to the same ray.
 struct PathLevel {
     uint32_t capacity = 0;
-    Buffer rays, states, skip, hits;  ///< of level 0 only where they are kept (PathQueues::keep_camera_rays)
+    /// Of level 0 only where they are kept (PathQueues::keep_camera_rays). Deeper levels take turns with two of them,
+    /// but where somebody looks at their hits later (Needs::keeps): a level's rays are not wanted any more when those
+    /// of the next have been made.
+    std::shared_ptr<PathRays> traced;
     Buffer nodes, branches;
-    Buffer media, walls;  ///< MediaStack and MediaWall each; only while media may overlap
 };
 
 /// Shadow rays; those of a node follow each other.
@@ -40,8 +52,13 @@ class PathQueues {
         uint32_t lights = 0;        ///< shadow rays that a hit may start
         uint32_t usual_lights = 1;  ///< how many of them there are as a rule
         bool layered = false;       ///< media may overlap; level 0's rays are then kept as well
+        bool keeps = false;         ///< all levels' rays and hits are there until the band is done
     };
     void prepare(const Needs& needs);
+    /// What they take at first, in bytes.
+    uint64_t bytes_of(const Needs& needs) const;
+    /// Gives everything back.
+    void release();
 
     /// Room for level 0's rays and hits, for passes that want them in buffers.
     void keep_camera_rays();
@@ -71,6 +88,9 @@ class PathQueues {
     uint64_t bytes() const;
 
   private:
+    /// Room at first for the rays of each level, the one behind the last included; those of lights in the end.
+    std::vector<uint64_t> capacities(const Needs& needs) const;
+    void share_rays(bool keeps);
     void allocate(PathLevel& level, uint32_t index, uint32_t capacity);
     void allocate_media();
     void allocate_lights(uint64_t capacity);
@@ -79,7 +99,7 @@ class PathQueues {
     std::vector<PathLevel> levels_;
     LightQueue lights_;
     uint32_t most_lights_;
-    bool layered_ = false;
+    bool layered_ = false, keeps_ = false;
     Buffer counters_, readback_;
 };
 

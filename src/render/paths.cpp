@@ -28,24 +28,24 @@ void record_scatter(FrameState& f, const LevelParams& p) {
     const bool camera = p.level == 0 && !layered;  // which makes its rays itself
     const std::vector<Binding> bindings =
         surface_bindings(scene, f.view.target.frame,
-                         {Binding::if_used("rays", camera ? nullptr : &level.rays),
-                          Binding::if_used("states", camera ? nullptr : &level.states),
-                          Binding::if_used("hits", camera ? nullptr : &level.hits),
+                         {Binding::if_used("rays", camera ? nullptr : &level.traced->rays),
+                          Binding::if_used("states", camera ? nullptr : &level.traced->states),
+                          Binding::if_used("hits", camera ? nullptr : &level.traced->hits),
                           {"nodes", level.nodes},
                           {"branches", level.branches},
                           {"queue", queues.counters()},
-                          {"next_rays", next.rays},
-                          {"next_states", next.states},
-                          {"next_skip", next.skip},
+                          {"next_rays", next.traced->rays},
+                          {"next_states", next.traced->states},
+                          {"next_skip", next.traced->skip},
                           {"lights", scene.lights},
                           {"shadow_rays", queues.lights().rays},
                           {"shadow_skip", queues.lights().skip},
                           {"shadow_light", queues.lights().light},
                           {"visibility", f.view.target.visibility},
                           {"draws", scene.draw_table},
-                          Binding::if_used("media_walls", level.walls),
+                          Binding::if_used("media_walls", level.traced->walls),
                           Binding::if_used("media_ranks", scene.media_ranks),
-                          Binding::if_used("next_media", next.media),
+                          Binding::if_used("next_media", next.traced->media),
                           Binding::if_used("shadow_media", queues.lights().media)});
     // A GPU is faster where the compiler knows; a CPU would compile for seconds once more.
     const uint32_t sampled = f.constants.effects & EFFECT_SAMPLED ? 1 : 0;
@@ -84,8 +84,8 @@ RayQueue queue_of(const PathQueues& queues, const Buffer& rays, const Buffer& sk
 }
 
 void record_trace(FrameState& f, uint32_t level) {
-    const PathLevel& rays = f.queues.level(level);
-    RayQueue queue = queue_of(f.queues, rays.rays, rays.skip, rays.capacity, level, level);
+    const PathRays& rays = *f.queues.level(level).traced;
+    RayQueue queue = queue_of(f.queues, rays.rays, rays.skip, f.queues.level(level).capacity, level, level);
     std::optional<CountBuffers> counting;
     if (f.counter) queue.counting = &counting.emplace(f.counter->level(level));
     if (f.layered())
@@ -98,7 +98,7 @@ void record_trace(FrameState& f, uint32_t level) {
 /// The camera's rays where media may overlap: in buffers, and followed through walls that are none to them.
 void record_camera_walls(FrameState& f, const LevelParams& p) {
     record_primary(f.commands, f.device, f.scene, f.view.target, f.queues, p, f.view.by_number());
-    const PathLevel& rays = f.queues.level(0);
+    const PathRays& rays = *f.queues.level(0).traced;
     f.tracer->trace_layered(f.commands, {RayQueue{rays.rays, nullptr, p.capacity}, rays.hits, rays.media, rays.walls,
                                          true, f.scene.base_colors.constant(), surfaces_of(f)});
 }

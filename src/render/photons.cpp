@@ -149,19 +149,20 @@ void PhotonMap::record_gather(FrameState& f, const LevelParams& level) {
                                cells.mask};
     const PathLevel& here = f.queues.level(level.level);
     const bool layered = f.layered(), camera = level.level == 0 && !layered;
-    const std::vector<Binding> bindings = surface_bindings(f.scene, f.view.target.frame,
-                                                           {Binding::if_used("rays", camera ? nullptr : &here.rays),
-                                                            Binding::if_used("states", camera ? nullptr : &here.states),
-                                                            Binding::if_used("hits", camera ? nullptr : &here.hits),
-                                                            {"nodes", here.nodes},
-                                                            {"branches", here.branches},
-                                                            {"queue", f.queues.counters()},
-                                                            {"visibility", f.view.target.visibility},
-                                                            {"draws", f.scene.draw_table},
-                                                            Binding::if_used("media_walls", here.walls),
-                                                            Binding::if_used("media_ranks", f.scene.media_ranks),
-                                                            {"photon_buckets", sums_},
-                                                            {"sorted_photons", sorted_}});
+    const std::vector<Binding> bindings =
+        surface_bindings(f.scene, f.view.target.frame,
+                         {Binding::if_used("rays", camera ? nullptr : &here.traced->rays),
+                          Binding::if_used("states", camera ? nullptr : &here.traced->states),
+                          Binding::if_used("hits", camera ? nullptr : &here.traced->hits),
+                          {"nodes", here.nodes},
+                          {"branches", here.branches},
+                          {"queue", f.queues.counters()},
+                          {"visibility", f.view.target.visibility},
+                          {"draws", f.scene.draw_table},
+                          Binding::if_used("media_walls", here.traced->walls),
+                          Binding::if_used("media_ranks", f.scene.media_ranks),
+                          {"photon_buckets", sums_},
+                          {"sorted_photons", sorted_}});
     const Pass& pass = device_.pass("photon_gather", {{"camera", camera},
                                                       {"by_number", camera && f.view.by_number()},
                                                       {"layered", layered},

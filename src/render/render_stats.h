@@ -27,6 +27,7 @@ struct RenderStats : TracerStats {
     bool timed = false;             ///< false: the device has no timestamps
     uint32_t moved = 0;             ///< instances that stand elsewhere than in the frame before
     uint64_t scene_bytes = 0, frame_bytes = 0, peak_bytes = 0;
+    uint32_t bands = 1, band_rows = 0;            ///< a picture is made in, for want of memory, and how high they are
     std::vector<Allocation> memory, peak_memory;  ///< all of the device's when the picture was done, and at the peak
     HitTest hit = HitTest::exact;
     CubeChoice choice;  ///< of the cubes

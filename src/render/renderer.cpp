@@ -95,6 +95,7 @@ struct Renderer::Impl {
     SamplesMade samples;
     uint32_t moved = 0;
     bool maps_moved = false;
+    uint32_t most_rows = 1u << 20;  ///< of a band: of higher ones the queues found no room
 
     Impl(Device& device, const Scene& source, const Moment& moment, const Assembly& assembly,
          const Environment& environment)
@@ -112,7 +113,10 @@ struct Renderer::Impl {
     void prepare_view();
     void prepare_maps();
     void prepare_photons();
+    PathQueues::Needs queue_needs() const;
+    void fit_bands();
     void prepare_queues();
+    bool smaller_bands();
     void look_back();
     FrameMeter render_frame(const PictureWatch& watch, bool only_kept = false);
     void render_pass(const Passes& passes, FrameMeter& meter, const Progress& progress);
@@ -197,7 +201,7 @@ void Renderer::Impl::prepare_view() {
         (f.scene.base_colors.kinds & MATERIALS_DISPERSIVE ? 4 : 2) + (f.indirect() ? 1 : 0);  // rays from a hit
     const uint64_t most = std::min({uint64_t(4u << 20), f.device.limits().maxStorageBufferRange / (each * entry),
                                     uint64_t(f.queues.most_lights()) / std::max(f.lights_per_hit(), 1u)});
-    f.bands = Bands(settings.width, settings.height, most);
+    f.bands = Bands(settings.width, settings.height, std::min(most, uint64_t(most_rows) * settings.width));
     frame.width = settings.width;
     frame.height = settings.height;
     frame.row_pixels = f.bands.row_pixels();
@@ -240,12 +244,45 @@ void Renderer::Impl::prepare_photons() {
     f.photons->prepare(f, std::move(plan));
 }
 
-void Renderer::Impl::prepare_queues() {
+PathQueues::Needs Renderer::Impl::queue_needs() const {
     const uint32_t face = f.maps ? f.maps->face() : 0;
-    f.queues.prepare({std::max(f.bands.most_pixels(), face * face), f.last_level + 1,
-                      f.settings.bounces + f.settings.gi + 1, f.scene.splits || f.indirect(), f.lights_per_hit(),
-                      f.usual_lights_per_hit(), f.layered()});
-    if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
+    return {std::max(f.bands.most_pixels(), face * face),
+            f.last_level + 1,
+            f.settings.bounces + f.settings.gi + 1,
+            f.scene.splits || f.indirect(),
+            f.lights_per_hit(),
+            f.usual_lights_per_hit(),
+            f.layered(),
+            is_denoised(f.settings) && !f.maps};
+}
+
+/// Where memory is limited, two thirds of what is left are for the queues of a band; cubes take the rest.
+void Renderer::Impl::fit_bands() {
+    const uint64_t room = f.device.room();
+    if (room == ~0ull) return;
+    while (f.queues.bytes_of(queue_needs()) > (room + f.queues.bytes()) / 3 * 2)
+        if (!f.bands.halve()) return;
+}
+
+void Renderer::Impl::prepare_queues() {
+    fit_bands();
+    for (;;) {
+        try {
+            f.queues.prepare(queue_needs());
+            if (f.maps || f.settings.aovs) f.queues.keep_camera_rays();
+            return;
+        } catch (const NoRoom&) {
+            if (!smaller_bands()) throw;
+        }
+    }
+}
+
+/// Gives back what the queues have; false: a band is as low as it can be.
+bool Renderer::Impl::smaller_bands() {
+    f.queues.release();
+    const bool halved = f.bands.halve();
+    most_rows = f.bands.rows();
+    return halved;
 }
 
 /// For Aovs::motion and Denoise::temporal.
@@ -345,7 +382,13 @@ void Renderer::Impl::record_shading(uint32_t sample, uint32_t first_row) {
 /// Looks at the counters of a submitted band; false: it must be done again, with more room or fewer rows.
 bool Renderer::Impl::finish_band(uint32_t first_row) {
     const bool seen = first_row > 0 || f.view.finish(f.queues);
-    if (f.queues.finish()) return seen;
+    try {
+        if (f.queues.finish()) return seen;
+    } catch (const NoRoom&) {
+        if (!smaller_bands()) throw;
+        prepare_queues();
+        return false;
+    }
     if (f.queues.crowded() && !f.bands.halve())
         fail(
             "eight rows of pixels need {} shadow rays, more than the {} that are traced at once: choose a smaller "
@@ -385,6 +428,8 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.tracer = f.settings.tracer;
     stats.visibility = f.view.by_number() ? Visibility::compute : Visibility::raster;
     stats.scene_bytes = f.scene.bytes();
+    stats.band_rows = f.bands.rows();
+    stats.bands = (f.settings.height + f.bands.rows() - 1) / f.bands.rows();
     stats.frame_bytes = f.queues.bytes() + output.bytes() + f.view.bytes() + (f.photons ? f.photons->bytes() : 0);
     stats.moved = moved;
     stats.counted = f.counter != nullptr;

@@ -36,9 +36,9 @@ void record_primary(Commands& commands, Device& device, const GpuScene& scene, c
                   {"positions", scene.triangles.positions},
                   {"triangles", scene.triangles.triangles},
                   {"visibility", target.visibility},
-                  {"rays", level.rays},
-                  {"states", level.states},
-                  {"hits", level.hits},
+                  {"rays", level.traced->rays},
+                  {"states", level.traced->states},
+                  {"hits", level.traced->hits},
                   {"instances", scene.instances.table()},
                   {"draws", scene.draw_table}},
                  params, groups_for(params.capacity, 64));

@@ -37,6 +37,8 @@ inline constexpr Limits kResolutionLimits{
     .least = 16, .most = 2048, .fault = "an LDI resolution of {} is out of range", .choose = "16 to 2048, or auto"};
 inline constexpr Limits kRefineLimits{
     .least = 1, .most = 1e9, .fault = "a list of {} samples is none", .choose = "1 or more, or auto"};
+inline constexpr Limits kMemoryLimits{
+    .least = 1, .most = 1e7, .fault = "a memory limit of {} MiB is out of range", .choose = "1 to 10000000"};
 inline constexpr Limits kMergeLimits{
     .least = 0, .most = 1e9, .fault = "{} triangles are out of range", .choose = "0 or more, or auto"};
 inline constexpr Limits kBlockLimits{

@@ -421,6 +421,10 @@ inline void add_effects(SettingList& list, EffectArguments& a) {
 struct DeviceArguments {
     std::string device;
     bool validate = false;
+    std::optional<uint32_t> memory_limit;  ///< MiB; none: whatever the device has
+
+    /// Bytes; 0: none.
+    uint64_t most_held() const { return uint64_t(memory_limit.value_or(0)) << 20; }
 };
 
 inline void add_device(SettingList& list, DeviceArguments& a) {
@@ -435,6 +439,15 @@ inline void add_device(SettingList& list, DeviceArguments& a) {
                 {.name = "validate",
                  .group = group,
                  .help = "run under the Vulkan validation layers; any message is an error",
+                 .changes_picture = false});
+    add_setting(list, a.memory_limit,
+                {.name = "memory-limit",
+                 .group = group,
+                 .help = "device memory held at most: what does not fit is made in bands, and cubes become coarser, "
+                         "which no exact hit depends on; default: all that the device has",
+                 .form = "MIB",
+                 .expected = "a number of MiB such as 512",
+                 .limits = kMemoryLimits,
                  .changes_picture = false});
 }
 

@@ -35,7 +35,7 @@ Workspace::~Workspace() = default;
 
 Device& Workspace::device() {
     const DeviceArguments& a = settings_.device;
-    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{a.device, a.validate});
+    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{a.device, a.validate, a.most_held()});
     return *device_;
 }
 
@@ -108,6 +108,9 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& given, const 
 void Workspace::note_settings(const RenderSettings& settings) {
     if (settings.tracer == Tracer::cubemap && settings.ambient && !std::exchange(noted_.ambient, true))
         note(notes_, fmt::format("{} cubemap has no ambient: the sky's diffuse light is unoccluded", setting::tracer));
+    if (is_on_cpu(settings.tracer) && settings_.device.memory_limit && !std::exchange(noted_.bands, true))
+        note(notes_, fmt::format("{} changes nothing: {} {} holds no memory of a device", setting::memory_limit,
+                                 setting::tracer, name_of(settings.tracer)));
     const std::string clean = clean_note(settings);
     if (!clean.empty() && !std::exchange(noted_.denoise, true)) note(notes_, clean);
 }
@@ -234,6 +237,12 @@ void Workspace::note_cubes(const RenderStats& stats) {
     if (!tolerance.empty() && !std::exchange(noted_.tolerance, true)) note(notes_, tolerance);
 }
 
+void Workspace::note_bands(const RenderStats& stats) {
+    if (stats.bands == 1 || !settings_.device.memory_limit || std::exchange(noted_.bands, true)) return;
+    note(notes_, fmt::format("{} {}: the picture is made in {} bands of {} rows", setting::memory_limit,
+                             *settings_.device.memory_limit, stats.bands, stats.band_rows));
+}
+
 MadePicture Workspace::render_on_device(const RenderSettings& settings, const PictureWatch& watch) {
     RenderResult result = renderer_for(settings).render(settings, watch);
     device_->check_validation();
@@ -243,6 +252,7 @@ MadePicture Workspace::render_on_device(const RenderSettings& settings, const Pi
     for (const RayCostField& field : kRayCostFields)
         made.stats.largest_of_a_pixel.*field.value = largest_of(result.aovs.costs, field);
     note_cubes(made.stats.render);
+    note_bands(made.stats.render);
     made.picture = std::move(result);
     return made;
 }

@@ -67,6 +67,7 @@ class Workspace {
     MadePicture in_world(MadePicture made) const;
     void note_settings(const RenderSettings& settings);
     void note_cubes(const RenderStats& stats);
+    void note_bands(const RenderStats& stats);
     void note_environment();
     void note_uncaught(const PictureSettings& settings);
     MadePicture render_on_device(const RenderSettings& settings, const PictureWatch& watch);
@@ -98,6 +99,7 @@ class Workspace {
         bool cut = false;          ///< that rays end too early
         bool caustics = false;     ///< that there are none, or not all
         bool crowded = false;      ///< that rays are in too many media
+        bool bands = false;        ///< that memory is limited to so little that a picture is made in bands
         ChoiceSet<HitTest> room;   ///< that these stand for what found no room
     } noted_;
 };

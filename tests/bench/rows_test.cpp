@@ -7,7 +7,7 @@ namespace peelray {
 namespace {
 
 TracedSet traced(RayKind kind, double ms) {
-    TracedSet set{kind, 3'000'000, timing_of({ms}), {}, {}};
+    TracedSet set{kind, 3'000'000, timing_of({ms}), {}, {}, {}};
     set.judged.checked = set.judged.counted = 20'000;
     set.judged.beside = 1;
     return set;
@@ -55,6 +55,35 @@ TEST(Rows, TheTimeOfWrongAnswersIsWithheld) {
     // As many as may be wrong are no reason.
     row.sets[0].judged.allowed = 1e-4;
     EXPECT_EQ(ray_row_json(row)["dynamic_ms"], 4);
+}
+
+TEST(Rows, WhatRaysCostIsToldByItsPercentiles) {
+    RayRow row = row_of("exact", 2, 1.5, 0.5);
+    EXPECT_EQ(costs_table({row}), "");
+    // 98 rays with 7 steps, one with 300 and one with 1000.
+    KindCosts costs;
+    costs.rays = 100;
+    costs.sums[0] = 98 * 7 + 300 + 1000;
+    costs.largest.steps = 1000;
+    costs.buckets.resize(COUNT_FIELDS * COUNT_BUCKETS);
+    costs.buckets[7] = 98;
+    costs.buckets[COUNT_EQUAL + (300 - 256) / 8] = 1;
+    costs.buckets[COUNT_EQUAL + 32 + (1000 - 512) / 16] = 1;
+    for (size_t field = 1; field < COUNT_FIELDS; field++) costs.buckets[field * COUNT_BUCKETS] = 100;
+    row.sets[0].costs = costs;
+    EXPECT_EQ(costs.percentile(0, 0.5), 7u);
+    EXPECT_EQ(costs.percentile(0, 0.98), 7u);
+    EXPECT_EQ(costs.percentile(0, 0.99), 303u) << "the most that its bucket holds";
+    EXPECT_EQ(costs.percentile(0, 1), 1000u) << "never more than the largest";
+    EXPECT_EQ(costs.percentile(1, 0.99), 0u);
+    const auto json = ray_row_json(row)["rays"]["mirror"]["costs"];
+    EXPECT_EQ(json["p50"]["steps"], 7);
+    EXPECT_EQ(json["p99"]["steps"], 303);
+    EXPECT_EQ(json["largest"]["steps"], 1000);
+    EXPECT_FALSE(ray_row_json(row)["rays"]["shadow"].contains("costs"));
+    EXPECT_NE(costs_table({row}).find("| blob:8000 | 1280x1024 | exact auto | mirror | 7 / 303 / 1000 | 0 / 0 / 0 |"),
+              std::string::npos)
+        << costs_table({row});
 }
 
 TEST(Rows, RatiosOfTheSameRaysOnly) {

@@ -49,6 +49,10 @@ TEST_F(Counters, EveryRayCountsOnceAndOfEachPixelAll) {
             for (const KindCosts& kind : kinds) {
                 all += kind.sums[i];
                 EXPECT_LE(kind.mean(i), kind.largest.*kRayCostFields[i].value);
+                const uint64_t* bucket = &kind.buckets.at(i * COUNT_BUCKETS);
+                EXPECT_EQ(std::accumulate(bucket, bucket + COUNT_BUCKETS, uint64_t(0)), kind.rays);
+                EXPECT_LE(kind.percentile(i, 0.5), kind.percentile(i, 0.99));
+                EXPECT_EQ(kind.percentile(i, 1), kind.largest.*kRayCostFields[i].value);
             }
             EXPECT_EQ(sum(picture.aovs.costs, kRayCostFields[i]), all);
             const bool nothing = traversal == Traversal::voxel && kRayCostFields[i].value == &RayCosts::pixels;
