@@ -324,5 +324,55 @@ TEST_F(Room, PanesBehindEachOtherAreNotedByEveryTracer) {
     }
 }
 
+/// --memory-limit, at a size where the queues of rays take the most.
+class MemoryLimit : public Room {
+  protected:
+    PictureArguments limited(std::optional<uint32_t> mib) const {
+        PictureArguments settings = field();
+        settings.size = {320, 240};
+        settings.device.memory_limit = mib;
+        return settings;
+    }
+};
+
+TEST_F(MemoryLimit, PicturesAreMadeInBandsThatLeaveThemAsTheyAre) {
+    const Made all = make(limited({}));
+    EXPECT_EQ(all.stats.render.bands, 1u);
+    // Room for all but the lower half of the queues.
+    const auto mib = uint32_t((all.stats.render.peak_bytes - all.bytes_of("frame") * 2 / 5) >> 20);
+    const Made less = make(limited(mib));
+    EXPECT_GT(less.stats.render.bands, 1u);
+    EXPECT_LE(less.stats.render.peak_bytes, uint64_t(mib) << 20);
+    EXPECT_EQ(less.noted(fmt::format("memory-limit\x0f {}: the picture is made in {} bands of {} rows", mib,
+                                     less.stats.render.bands, less.stats.render.band_rows)),
+              1u);
+    EXPECT_EQ(less.cubes().resolution, all.cubes().resolution);
+    expect_identical(less, all);
+}
+
+TEST_F(MemoryLimit, ThenCubesBecomeCoarser) {
+    const Made all = make(limited({}));
+    const uint64_t least = all.bytes_of("scene") + all.bytes_of("triangles") + all.bytes_of("images");
+    const auto mib = uint32_t((least + all.bytes_of("cubes")) >> 20);
+    const Made less = make(limited(mib));
+    EXPECT_LE(less.stats.render.peak_bytes, uint64_t(mib) << 20);
+    EXPECT_LT(less.cubes().resolution, all.cubes().resolution);
+    EXPECT_EQ(less.noted("has no room for another"), 1u);
+    expect_same_picture(less, all);
+}
+
+TEST_F(MemoryLimit, TooLittleIsSaidInOneLine) {
+    const std::string line = refusal(limited(1));
+    EXPECT_NE(line.find("--memory-limit 1 has no room for another"), std::string::npos) << line;
+    EXPECT_NE(line.find(": raise --memory-limit, or "), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+TEST_F(MemoryLimit, OnTheCpuThereIsNothingToLimit) {
+    PictureArguments settings = limited(1);
+    settings.tracing.tracer = Tracer::cpu;
+    EXPECT_EQ(make(settings).noted("changes nothing"), 1u);
+}
+
 }  // namespace
 }  // namespace peelray

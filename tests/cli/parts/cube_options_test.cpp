@@ -13,8 +13,9 @@ TEST(CubeOptions, AreThoseOfCubesAndOfMeasuringADevice) {
     std::set<std::string> names;
     for (const SettingEntry& entry : options_of(arguments))
         if (entry.info.of_cubes) names.insert(entry.info.name);
-    EXPECT_EQ(names, (std::set<std::string>{"batch", "block", "builder", "counters", "depth", "hit", "ldc", "rebuild",
-                                            "refine", "repeat", "routing", "tolerance", "traversal", "visibility"}));
+    EXPECT_EQ(names,
+              (std::set<std::string>{"batch", "block", "builder", "counters", "depth", "hit", "ldc", "merge", "rebuild",
+                                     "refine", "repeat", "routing", "tolerance", "traversal", "visibility"}));
 }
 
 }  // namespace
