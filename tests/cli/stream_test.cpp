@@ -66,11 +66,9 @@ TEST_F(Stream, SeveralFramesAreAVideo) {
 }
 
 TEST_F(Stream, AReaderThatGoesIsSaidInOneLine) {
-    const std::string script = "P | head -c 1 > /dev/null\necho ${PIPESTATUS[0]}";
-    for (const Words& more : {Words{"--frames", "0:300", "--size", "128x96"}, Words{"--size", "1024x1024"}}) {
-        // A picture that fits into the pipe is written before anybody can tell.
-        const Outcome run = shell(more.size() > 2 ? script : "P | exec true\necho ${PIPESTATUS[0]}", more);
-        if (more.size() == 2) continue;
+    for (const Words& more :
+         {Words{"--frames", "0:300", "--size", "256x192"}, Words{"--turntable", "300", "--size", "256x192"}}) {
+        const Outcome run = shell("P | head -c 1 > /dev/null\necho ${PIPESTATUS[0]}", more);
         EXPECT_EQ(run.out, "1\n");
         EXPECT_EQ(run.err,
                   "peelray: the program that read the standard output has closed it: what it got is not whole\n");

@@ -92,7 +92,9 @@ TEST_F(Workers, AnErrorIsOneLineThatNamesTheFile) {
     EXPECT_NE(run.err.find("f07.png: it is a folder"), std::string::npos) << run.err;
     for (const std::string& name : outputs()) {
         EXPECT_FALSE(name.starts_with(".peelray-")) << name;
-        if (name.ends_with(".png") && name != "f07.png") EXPECT_EQ(read_ldr(out(name)).width, 64u) << name;
+        if (name.ends_with(".png") && name != "f07.png") {
+            EXPECT_EQ(read_ldr(out(name)).width, 64u) << name;
+        }
     }
     EXPECT_TRUE(fs::exists(out("f00.png")));
     EXPECT_FALSE(fs::exists(out("f59.png")));
@@ -156,7 +158,7 @@ TEST_F(Workers, ValuesBeyondHalvesAreTold) {
     EXPECT_EQ(kept.err.find("half"), std::string::npos) << kept.err;
     float most = 0;
     for (const glm::vec4& pixel : read_hdr(out("b.exr")).pixels) most = std::max(most, pixel.x);
-    EXPECT_EQ(most, 100000);
+    EXPECT_NEAR(most, 100000, 1);
 }
 
 TEST_F(Workers, HalfIsForExr) {

@@ -22,7 +22,7 @@ TEST_F(EnvironmentFile, WhatIsNoRadianceIsCountedAndBlack) {
                      {1, 2, infinite, 1},
                      {-infinite, 2, 3, 1},
                      {1e13f, 0, 0, 1}}},
-              true);
+              {.half = false});
     std::vector<std::string> notes;
     const Image image = read_environment(folder / "a.exr", notes);
     EXPECT_EQ(image.pixels, (std::vector<glm::vec4>{

@@ -1,5 +1,6 @@
 // EXR out, read by OpenEXR: half floats, compression, and values that half floats do not reach.
 #include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 
@@ -81,7 +82,7 @@ TEST_F(ExrOut, OpenExrReadsEverySizeAndCompression) {
             for (const bool half : {true, false})
                 for (const bool zip : {true, false}) {
                     const Image image = random_image(width, height, opaque);
-                    EXPECT_EQ(write_hdr(folder / "a.exr", image, {half, zip}), 0u);
+                    EXPECT_EQ(write_hdr(folder / "a.exr", image, ExrFormat{half, zip}), 0u);
                     Imf::InputFile file((folder / "a.exr").c_str());
                     EXPECT_TRUE(file.isComplete());
                     EXPECT_EQ(file.header().compression(), zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
