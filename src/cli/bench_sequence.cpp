@@ -45,8 +45,10 @@ class Stopwatch {
 class ScratchFolder {
   public:
     ScratchFolder() {
-        std::string name = (fs::temp_directory_path() / "peelray-bench-XXXXXX").string();
-        if (!::mkdtemp(name.data())) fail("cannot make a folder in {}: set TMPDIR to one that can be written", name);
+        std::error_code error;
+        std::string name = (fs::temp_directory_path(error) / "peelray-bench-XXXXXX").string();
+        if (error || !::mkdtemp(name.data()))
+            fail("cannot make a folder for temporary files: set TMPDIR to one that can be written");
         path = name;
     }
     ~ScratchFolder() {

@@ -1,5 +1,5 @@
 // -o -: pictures and videos on the standard output, and what happens when nobody takes them.
-#include <poll.h>
+#include <sys/stat.h>
 
 #include <regex>
 
@@ -20,13 +20,15 @@ class Stream : public SequenceTest {
     }
     Outcome stream(const Words& more) const { return run(words_to(more)); }
 
-    /// Runs the program in a shell: "$P" is it with the words of words_to(). Returns what the shell says.
+    /// Runs a script in which $P is a program: this one with words_to(). Returns what the script says.
     Outcome shell(const std::string& script, const Words& more) const {
-        std::string line = "'" PEELRAY_PROGRAM "'";
+        std::string line = "exec '" PEELRAY_PROGRAM "'";
         for (const std::string& word : words_to(more)) line += " '" + word + "'";
+        put("program", "#!/bin/sh\nexport XDG_CACHE_HOME='" PEELRAY_CACHE "'\n" + line + "\n");
+        ::chmod(in("program").c_str(), 0755);
+        put("script", "P='" + in("program") + "'\n" + script + "\n");
         const std::string err = folder / "scratch/err", out_file = folder / "scratch/out";
-        put("run.sh", "P() { XDG_CACHE_HOME='" PEELRAY_CACHE "' " + line + "; }\n" + script + "\n");
-        const int status = std::system(("bash '" + in("run.sh") + "' > '" + out_file + "' 2> '" + err + "'").c_str());
+        const int status = std::system(("bash '" + in("script") + "' > '" + out_file + "' 2> '" + err + "'").c_str());
         return {WEXITSTATUS(status), get(out_file), get(err)};
     }
 };
@@ -68,7 +70,7 @@ TEST_F(Stream, SeveralFramesAreAVideo) {
 TEST_F(Stream, AReaderThatGoesIsSaidInOneLine) {
     for (const Words& more :
          {Words{"--frames", "0:300", "--size", "256x192"}, Words{"--turntable", "300", "--size", "256x192"}}) {
-        const Outcome run = shell("P | head -c 1 > /dev/null\necho ${PIPESTATUS[0]}", more);
+        const Outcome run = shell("$P | head -c 1 > /dev/null\necho ${PIPESTATUS[0]}", more);
         EXPECT_EQ(run.out, "1\n");
         EXPECT_EQ(run.err,
                   "peelray: the program that read the standard output has closed it: what it got is not whole\n");
@@ -76,24 +78,24 @@ TEST_F(Stream, AReaderThatGoesIsSaidInOneLine) {
 }
 
 TEST_F(Stream, AFullDiskIsSaidInOneLine) {
-    const Outcome run = shell("P > /dev/full; echo $?", {"--frames", "0:30"});
+    const Outcome run = shell("$P > /dev/full; echo $?", {"--frames", "0:30"});
     EXPECT_EQ(run.out, "1\n");
     EXPECT_EQ(run.err, "peelray: cannot write to the standard output: No space left on device\n");
-    const Outcome picture = shell("P > /dev/full; echo $?", {});
+    const Outcome picture = shell("$P > /dev/full; echo $?", {});
     EXPECT_EQ(picture.out, "1\n");
     EXPECT_EQ(picture.err, "peelray: cannot write to the standard output: No space left on device\n");
 }
 
 /// Nobody reads, the pipe is full: it ends all the same.
 TEST_F(Stream, AnInterruptEndsItWhileTheReaderSleeps) {
-    const Outcome run =
-        shell("mkfifo '" + in("pipe") + "'\nsleep 60 < '" + in("pipe") + "' & reader=$!\nP > '" + in("pipe") +
-                  "' & program=$!\nsleep 3; kill -INT $program; wait $program; echo $?\nkill $reader",
-              {"--frames", "0:1000", "--size", "320x240"});
+    const Outcome run = shell("cd '" + folder.string() +
+                                  "'; mkfifo pipe; sleep 60 < pipe & reader=$!\n"
+                                  "$P > pipe & program=$!\n"
+                                  "sleep 4; kill -TERM $program; wait $program; echo $?; kill $reader",
+                              {"--frames", "0:1000", "--size", "320x240"});
     EXPECT_EQ(run.out, "1\n");
-    EXPECT_TRUE(
-        std::regex_search(run.err, std::regex("peelray: interrupted after \\d+ of 1000 frames: the video on the "
-                                              "standard output ends there; run it again\n")))
+    EXPECT_TRUE(std::regex_match(run.err, std::regex("peelray: interrupted after \\d+ of 1000 frames: the video on the "
+                                                     "standard output ends there; run it again\n")))
         << run.err;
 }
 
@@ -120,7 +122,7 @@ TEST_F(Stream, WhatCannotBeIsRefused) {
 TEST_F(Stream, ATerminalIsRefused) {
     if (std::system("command -v script > /dev/null") != 0)
         GTEST_SKIP() << "there is no script: apt-get install bsdutils";
-    const Outcome run = shell("export -f P; script -qec P /dev/null", {});
+    const Outcome run = shell("script -qec $P /dev/null", {});
     EXPECT_NE(run.out.find("the standard output is a terminal: pipe it into a program or a file"), std::string::npos)
         << run.out << run.err;
 }
