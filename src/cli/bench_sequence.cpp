@@ -171,15 +171,14 @@ void add_row(BenchOutput& output, const std::string& scene, const Way& way, uint
                "");
 }
 
-void measure(const BenchArguments& a, const std::string& scene, BenchOutput& output) {
+void measure(const BenchArguments& a, const std::string& scene, const fs::path& folder, BenchOutput& output) {
     SequenceBench bench(a, scene);
     Way alone{"rendered only"}, png{"PNG files"}, y4m{"y4m into nothing"}, png_encoder{"PNG encoder alone"},
         y4m_encoder{"y4m conversion alone"};
-    const ScratchFolder folder;
     const auto add = [&](const Way& way) { add_row(output, scene, way, bench.frames()); };
     bench.run_alone(alone);
     add(alone);
-    bench.run_png(png, folder.path);
+    bench.run_png(png, folder);
     add(png);
     bench.run_encoder(png_encoder, [](const Image8View& image) { return encode_png("nothing.png", image); });
     add(png_encoder);
@@ -194,6 +193,7 @@ void measure(const BenchArguments& a, const std::string& scene, BenchOutput& out
 void run_sequence_bench(const BenchArguments& a) {
     if (a.size.x % 2 || a.size.y % 2)
         fail("a video of {}x{} pixels is impossible, width and height must be even (--size)", a.size.x, a.size.y);
+    const ScratchFolder folder;
     const std::string renderer = SequenceBench(a, a.scenes.front()).renderer_name();
     BenchOutput output(a, {{"benchmark", "sequence"},
                            {"commit", build_commit()},
@@ -208,7 +208,7 @@ void run_sequence_bench(const BenchArguments& a) {
     output.run(
         5 * a.scenes.size(),
         [&] {
-            for (const std::string& scene : a.scenes) measure(a, scene, output);
+            for (const std::string& scene : a.scenes) measure(a, scene, folder.path, output);
         },
         [](bool) {});
 }
