@@ -151,11 +151,11 @@ void check_picture_name(const RenderArguments& a) {
     if (!exr && a.exr_compression && a.aovs.empty())
         fail("--exr-compression is for .exr files, and '{}' is none: name it .exr, or leave --exr-compression out",
              path.string());
-    check_picture_name(path, a.is_transparent());
+    if (!is_standard_output(path)) check_picture_name(path, a.is_transparent());
 }
 
 void check_picture_name(const fs::path& path, bool transparent) {
-    if (!is_standard_output(path) && format_of(path) == Format::hdr && transparent)
+    if (format_of(path) == Format::hdr && transparent)
         fail(
             "--background transparent needs an alpha channel, and '{}' has none: name it .png or .exr, or give a "
             "colour",

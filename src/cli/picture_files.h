@@ -22,7 +22,7 @@ PictureFiles picture_files(const RenderArguments& arguments);
 /// Throws Error unless the output's name says .png, .exr or .hdr or is that of the standard output, and is an .exr
 /// where the other options need one.
 void check_picture_name(const RenderArguments& arguments);
-/// The same for any picture; where it is transparent, one with alpha.
+/// Throws Error unless it is a picture file's name and, where the picture is transparent, one with alpha.
 void check_picture_name(const std::filesystem::path& path, bool transparent);
 
 /// Does such a file hold Picture::radiance? Else it holds what Picture::encoded does.

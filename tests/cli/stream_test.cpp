@@ -116,6 +116,7 @@ TEST_F(Stream, WhatCannotBeIsRefused) {
     refused(frames({"--half"}), "--half is for .exr files and a video is none");
     refused({"--aov", "depth"}, "the standard output has none: name the picture (-o NAME.png)");
     refused({"--half"}, "--half is about the channels of an .exr, and '-' is none");
+    refused({"--preview", "-"}, "cannot tell the picture's format from '-'");
     refused({"--exr-compression", "none"}, "--exr-compression is for .exr files, and '-' is none");
 }
 
