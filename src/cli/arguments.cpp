@@ -90,6 +90,41 @@ void add_progress(SettingList& list, RenderArguments& a) {
                  .excludes = {"repeat", "frames", "turntable"}});
 }
 
+/// A choice that has a default, and of which it matters whether it was made.
+template <Choice Value>
+void add_choice(SettingList& list, std::optional<Value>& value, Value preset, SettingInfo info) {
+    info.form = form_of<Value>("");
+    info.expected = "one of " + info.form;
+    add_setting(
+        list, value, std::move(info),
+        [](const std::string& text) -> std::optional<std::optional<Value>> {
+            if (const auto chosen = value_named<Value>(text)) return std::optional(chosen);
+            return std::nullopt;
+        },
+        [preset](const std::optional<Value>& v) { return std::optional<std::string>(name_of(v.value_or(preset))); });
+}
+
+void add_exr(SettingList& list, RenderArguments& a, const std::string& group) {
+    add_setting(
+        list, a.exr_layers,
+        {.name = "exr-layers",
+         .group = group,
+         .help = "put the pictures of --aov into the .exr itself, as layers that Blender and Nuke know, and not "
+                 "into files beside it",
+         .needs = "aov"});
+    add_choice(
+        list, a.half, YesNo::yes,
+        {.name = "half",
+         .group = group,
+         .help = "whether the channels R, G, B and A of the .exr are half floats, of up to 65504; no: floats, of "
+                 "twice the bytes; depths, numbers and all other auxiliary pictures are floats in any case",
+         .implied = "yes"});
+    add_choice(list, a.exr_compression, Compression::zip,
+               {.name = "exr-compression",
+                .group = group,
+                .help = "of each .exr that is written; none: larger files, as fast as the disk is"});
+}
+
 }  // namespace
 
 SettingList options_of(RenderArguments& a) {
@@ -98,7 +133,7 @@ SettingList options_of(RenderArguments& a) {
              {.name = "output",
               .letter = 'o',
               .help = "picture to write: .png (tone-mapped sRGB), .exr or .hdr (linear radiance); for several frames "
-                      "see --frames",
+                      "see --frames; -: the standard output, a PNG or, of several frames, a video as YUV4MPEG2",
               .required = true});
     append(list, picture_settings(a));
     append(list, sequence_settings(a.sequence));
@@ -125,13 +160,7 @@ SettingList options_of(RenderArguments& a) {
                     const std::string names = print_text(set);
                     return names.empty() ? std::nullopt : std::optional(names);
                 });
-    add_setting(
-        list, a.exr_layers,
-        {.name = "exr-layers",
-         .group = group,
-         .help = "put the pictures of --aov into the .exr itself, as layers that Blender and Nuke know, and not "
-                 "into files beside it",
-         .needs = "aov"});
+    add_exr(list, a, group);
     add_file(list, a.stats, {.name = "stats", .group = group, .help = "also write times, rays and memory as JSON"});
     add_setting(list, a.counters,
                 {.name = "counters",
@@ -264,6 +293,12 @@ void add_runs(SettingList& list, BenchArguments& a) {
                 {.name = "auto-check",
                  .help = "frames with --ldc auto and --hit auto against the best of fixed resolutions and hit tests",
                  .excludes = {"paper", "quick"}});
+    add_setting(list, a.sequence,
+                {.name = "sequence",
+                 .help = "frames of a sequence (--repeat of them, default 60) on their whole way: rendered, written as "
+                         "PNG into a folder in TMPDIR, converted for a video; beside the encoders alone; default of "
+                         "--scenes: walker",
+                 .excludes = {"paper", "quick", "auto-check"}});
     add_setting(list, a.models,
                 {.name = "models",
                  .help = "folder with bunny_7k.off, car2.glb, chinesedragon.gltf, igea.ply and tiny.glb, or with "

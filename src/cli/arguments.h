@@ -15,6 +15,8 @@ struct RenderArguments : PictureArguments {
     std::filesystem::path output, stats, preview;
     std::vector<Aov> aovs;
     bool exr_layers = false;
+    std::optional<YesNo> half;                   ///< none: yes
+    std::optional<Compression> exr_compression;  ///< none: zip
     bool counters = false;
     std::optional<double> time_limit;  ///< seconds
     std::optional<float> noise_target;
@@ -50,7 +52,7 @@ struct TraceArguments : SceneArguments {
 
 /// Lists that are empty stand for the default, which `run_bench` fills in.
 struct BenchArguments : BenchSettings {
-    bool paper = false, auto_check = false;
+    bool paper = false, auto_check = false, sequence = false;
     std::optional<glm::uvec2> given_size;  ///< what `size` becomes, if given
     std::optional<uint32_t> given_repeat;
     std::filesystem::path output, markdown, plots;

@@ -11,5 +11,7 @@ void run_paper_bench(const BenchArguments& arguments);
 void run_ray_bench(const BenchArguments& arguments);
 /// --auto-check: what `auto` chooses against the best fixed choice.
 void run_auto_check(const BenchArguments& arguments);
+/// --sequence: frames on their whole way into files and streams, beside the encoders alone.
+void run_sequence_bench(const BenchArguments& arguments);
 
 }  // namespace peelray

@@ -20,6 +20,11 @@ BenchArguments with_defaults(BenchArguments a) {
         if (a.ldc.empty()) a.ldc = Resolutions{512, 1024};
         return a;
     }
+    if (a.sequence) {
+        a.repeat = a.given_repeat.value_or(60);
+        if (a.scenes.empty()) a.scenes = {"walker"};
+        return a;
+    }
     if (a.scenes.empty()) a.scenes = a.quick ? quick_bench_scenes() : default_bench_scenes();
     if (a.hits.empty()) a.hits = {HitTest::exact, HitTest::planar};
     if (a.auto_check) {
@@ -60,12 +65,13 @@ void run_bench(const BenchArguments& given) {
     watch_interrupts();
     if (a.paper) return run_paper_bench(a);
     if (a.auto_check) return run_auto_check(a);
+    if (a.sequence) return run_sequence_bench(a);
 #ifdef PEELRAY_WITH_REFERENCE
     run_ray_bench(a);
 #else
     fail(
         "this program was built without the reference (PEELRAY_REFERENCE=OFF), which makes and judges the rays: there "
-        "are --paper and --auto-check");
+        "are --paper, --auto-check and --sequence");
 #endif
 }
 

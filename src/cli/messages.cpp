@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "cli/standard_output.h"
+
 namespace peelray {
 
 std::string one_line(std::string text) {
@@ -36,6 +38,17 @@ std::string shell_line(const std::vector<std::string>& words) {
 
 void print_note(const std::string& text) {
     fmt::print(stderr, "peelray: note: {}\n", one_line(message_of(Error(text))));
+}
+
+void print_if_any(const std::string& note) {
+    if (!note.empty()) print_note(note);
+}
+
+void print_result(const std::filesystem::path& output, const std::string& text) {
+    if (is_standard_output(output))
+        fmt::print(stderr, "standard output: {}\n", text);
+    else
+        fmt::print("{}: {}\n", output.string(), text);
 }
 
 }  // namespace peelray

@@ -1,6 +1,7 @@
 // What the program says on the terminal.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,8 @@ std::string quoted(const std::string& word);
 std::string shell_line(const std::vector<std::string>& words);
 /// A line on standard error that is no complaint. Settings in it, as fmt prints a Setting, become their flags.
 void print_note(const std::string& text);
+void print_if_any(const std::string& note);
+/// What came of `output`: a line on the standard output, or on standard error where the output is the former.
+void print_result(const std::filesystem::path& output, const std::string& text);
 
 }  // namespace peelray

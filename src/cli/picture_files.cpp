@@ -1,11 +1,11 @@
 #include "cli/picture_files.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <list>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "cli/standard_output.h"
 #include "image/image.h"
 #include "image/metrics.h"
 #include "settings/aovs.h"
@@ -83,36 +83,32 @@ Channels directions(Aov aov) {
 }
 }  // namespace channels
 
-/// What a file holds: names of channels, and the values of each.
-struct Planes {
-    std::vector<std::string> names;
-    std::vector<std::vector<float>> values;
-
-    template <typename Value>
-    void add(const std::vector<Channel>& channels, const std::vector<Value>& pixels) {
-        for (const Channel& channel : channels) {
-            names.push_back(channel.name);
-            std::vector<float>& plane = values.emplace_back();
-            plane.reserve(pixels.size());
-            for (const Value& pixel : pixels)
-                plane.push_back(
-                    std::bit_cast<std::array<float, sizeof(Value) / sizeof(float)>>(pixel)[channel.component]);
-        }
-    }
-};
-
 std::vector<float> counts_of(const Picture& picture, const RayCostField& field) {
-    std::vector<float> counts;
-    for (const RayCosts& costs : picture.aovs.costs) counts.push_back(float(costs.*field.value));
+    std::vector<float> counts(picture.aovs.costs.size());
+    for (size_t i = 0; i < counts.size(); i++) counts[i] = float(picture.aovs.costs[i].*field.value);
     return counts;
 }
+
+/// What a file holds of auxiliary pictures, which must outlive it.
+struct Planes {
+    std::vector<ExrChannel> channels;
+    std::list<std::vector<float>> counts;  ///< what is not a float in the picture
+
+    template <typename Value>
+    void add(const std::vector<Channel>& added, const std::vector<Value>& pixels) {
+        static_assert(sizeof(Value) % sizeof(float) == 0);
+        const float* values = reinterpret_cast<const float*>(pixels.data());
+        for (const Channel& channel : added)
+            channels.push_back({channel.name, values + channel.component, sizeof(Value) / sizeof(float)});
+    }
+};
 
 void add_aov(Planes& planes, const Picture& picture, Aov aov, bool layered) {
     const auto add = [&](const Channels& channels, const auto& pixels) {
         planes.add(layered ? channels.layered : channels.alone, pixels);
     };
     if (const RayCostField* field = cost_field(aov))
-        return add(channels::number(aov, field->name), counts_of(picture, *field));
+        return add(channels::number(aov, field->name), planes.counts.emplace_back(counts_of(picture, *field)));
 #define AOV_ADD(name, type, kind, nothing) \
     if (aov == Aov::name) return add(channels::kind(aov), picture.aovs.name);
     SURFACE_AOVS(AOV_ADD)
@@ -131,12 +127,34 @@ void write_heat_map(const Picture& picture, const RayCostField& field, const fs:
 
 }  // namespace
 
-void check_picture_name(const fs::path& path, bool exr_layers, bool transparent) {
-    if (format_of(path) != Format::exr && exr_layers)
+PictureFiles picture_files(const RenderArguments& a) {
+    const ExrFormat exr{a.half.value_or(YesNo::yes) == YesNo::yes,
+                        a.exr_compression.value_or(Compression::zip) == Compression::zip};
+    return {a.aovs, a.exr_layers, exr};
+}
+
+bool shows_radiance(const fs::path& path) {
+    return !is_standard_output(path) && format_of(path) != Format::png;
+}
+
+void check_picture_name(const RenderArguments& a) {
+    const fs::path& path = a.output;
+    const bool exr = !is_standard_output(path) && format_of(path) == Format::exr;
+    if (!exr && a.exr_layers)
         fail(
             "--exr-layers puts the auxiliary pictures into the picture itself, and '{}' has no room for them: name it "
             ".exr, or leave --exr-layers out, which writes files beside it",
             path.string());
+    if (!exr && a.half)
+        fail("--half is about the channels of an .exr, and '{}' is none: name it .exr, or leave --half out",
+             path.string());
+    if (!exr && a.exr_compression && a.aovs.empty())
+        fail("--exr-compression is for .exr files, and '{}' is none: name it .exr, or leave --exr-compression out",
+             path.string());
+    if (!is_standard_output(path)) check_picture_name(path, a.is_transparent());
+}
+
+void check_picture_name(const fs::path& path, bool transparent) {
     if (format_of(path) == Format::hdr && transparent)
         fail(
             "--background transparent needs an alpha channel, and '{}' has none: name it .png or .exr, or give a "
@@ -157,22 +175,32 @@ fs::path heat_map_path(const fs::path& output, Aov aov) {
     return fs::path(output).replace_extension(std::string(name_of(aov)) + ".png");
 }
 
-void write_picture(const Picture& picture, const std::vector<Aov>& aovs, bool exr_layers, const fs::path& path) {
+size_t write_picture(const Picture& picture, const PictureFiles& files, const fs::path& path) {
     const uint32_t width = picture.width, height = picture.height;
-    Planes planes;
-    for (const Aov aov : aovs) {
+    Planes layers;
+    for (const Aov aov : files.aovs) {
         if (const RayCostField* field = cost_field(aov)) write_heat_map(picture, *field, heat_map_path(path, aov));
-        add_aov(planes, picture, aov, exr_layers);
-        if (exr_layers) continue;
-        write_exr_channels(aov_path(path, aov), width, height, planes.names, planes.values);
-        planes = {};
+        if (files.exr_layers) {
+            add_aov(layers, picture, aov, true);
+            continue;
+        }
+        Planes planes;
+        add_aov(planes, picture, aov, false);
+        write_exr_channels(aov_path(path, aov), width, height, planes.channels, files.exr);
     }
-    if (format_of(path) == Format::png)
-        write_png(path, Image8{width, height, picture.encoded}, picture.transparent);
-    else if (exr_layers)
-        write_exr_layers(path, {width, height, picture.radiance}, planes.names, planes.values);
-    else
-        write_hdr(path, Image{width, height, picture.radiance});
+    if (format_of(path) == Format::png) {
+        write_png(path, {width, height, picture.encoded}, picture.transparent);
+        return 0;
+    }
+    const ImageView radiance{width, height, picture.radiance};
+    return files.exr_layers ? write_exr_layers(path, radiance, layers.channels, files.exr)
+                            : write_hdr(path, radiance, files.exr);
+}
+
+std::string beyond_note(size_t values) {
+    if (values == 0) return {};
+    return fmt::format("{} brighter than half floats reach and became 65504: --half no keeps {}",
+                       counted("{} value{ was|s were}", values), values == 1 ? "it" : "them");
 }
 
 }  // namespace peelray

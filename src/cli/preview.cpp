@@ -28,7 +28,7 @@ void Preview::finish(const Picture& picture) {
 
 void Preview::write(const Picture& picture) {
     try {
-        write_picture(picture, {}, false, path_);
+        write_picture(picture, {}, path_);
         written_ = true;
     } catch (const Error& error) {
         print_note(fmt::format("there is no preview any more: {}", error.text()));

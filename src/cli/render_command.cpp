@@ -11,7 +11,9 @@
 #include "cli/preview.h"
 #include "cli/render_plan.h"
 #include "cli/sequence.h"
+#include "cli/standard_output.h"
 #include "cli/stats_json.h"
+#include "image/image.h"
 #include "settings/aovs.h"
 
 namespace peelray {
@@ -51,10 +53,15 @@ std::string samples_of(const RenderArguments& a, const SamplesMade& samples) {
 void report(const RenderArguments& a, const MadePicture& made, size_t triangles, double seconds) {
     const Picture& picture = made.picture;
     const uint64_t rays = picture.rays.primary + picture.rays.secondary();
-    fmt::print("{}: {}x{}, {}{}, {}{}; {:.2f} s in all on {}\n", a.output.string(), picture.width, picture.height,
-               samples_of(a, picture.samples), counted("{} triangle{|s}", triangles),
-               rays < 100'000 ? counted("{} ray{|s}", rays) : fmt::format("{:.1f} M rays", double(rays) * 1e-6),
-               summary_of(made.stats), seconds, made.stats.machine.name);
+    print_result(a.output, fmt::format("{}x{}, {}{}, {}{}; {:.2f} s in all on {}", picture.width, picture.height,
+                                       samples_of(a, picture.samples), counted("{} triangle{|s}", triangles),
+                                       rays < 100'000 ? counted("{} ray{|s}", rays)
+                                                      : fmt::format("{:.1f} M rays", double(rays) * 1e-6),
+                                       summary_of(made.stats), seconds, made.stats.machine.name));
+}
+
+std::string png_of(const Picture& picture) {
+    return encode_png("the standard output", {picture.width, picture.height, picture.encoded}, picture.transparent);
 }
 
 }  // namespace
@@ -67,12 +74,17 @@ void run_render(const RenderArguments& given) {
     check_single(a);
     check_counters(a);
     check_ends(a);
-    check_picture_name(a.output, a.exr_layers, a.is_transparent());
-    if (!a.preview.empty()) check_picture_name(a.preview, false, a.is_transparent());
+    check_picture_name(a);
+    if (!a.preview.empty()) check_picture_name(a.preview, a.is_transparent());
     if (is_on_cpu(*a.tracing.tracer) && a.repeat > 1)
         fail("--repeat measures GPU frames; with --tracer {} leave it out", name_of(*a.tracing.tracer));
     const RenderSettings settings = render_settings(a);
-    std::vector<fs::path> outputs = {a.output};
+    std::vector<fs::path> outputs;
+    std::optional<StandardOutput> standard_output;
+    if (is_standard_output(a.output))
+        standard_output.emplace();
+    else
+        outputs.push_back(a.output);
     for (const fs::path& path : paths_beside(a.output, a.aovs, a.exr_layers)) outputs.push_back(path);
     for (const fs::path& path : {a.stats, a.preview})
         if (!path.empty()) outputs.push_back(path);
@@ -87,7 +99,10 @@ void run_render(const RenderArguments& given) {
     if (preview) watch.pass_ended = [&](const std::function<Picture()>& look) { preview.update(look); };
     if (a.keep_partial) watch.stop = was_interrupted;
     const MadePicture made = render_with_bar(workspace, settings, shot, watch);
-    write_picture(made.picture, a.aovs, a.exr_layers, a.output);
+    if (standard_output)
+        standard_output->write(png_of(made.picture));
+    else
+        print_if_any(beyond_note(write_picture(made.picture, picture_files(a), a.output)));
     for (const Aov aov : a.aovs)
         if (const RayCostField* field = cost_field(aov))
             print_note(fmt::format("{}: from 0, black, to {}, light yellow", heat_map_path(a.output, aov).string(),

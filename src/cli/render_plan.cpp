@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "cli/picture_files.h"
+#include "cli/video.h"
 #include "settings/aovs.h"
 #include "workspace/automatic_tracer.h"
 
@@ -32,6 +34,10 @@ RenderSettings render_settings(const RenderArguments& a) {
     settings.noise_target = a.noise_target;
     settings.moments = any_from(AovSource::samples) || a.noise_target;
     settings.motion = wants(a, Aov::motion);
+    const bool preview = !a.preview.empty(), bright_preview = preview && shows_radiance(a.preview);
+    const bool bright = !is_video(a.output) && shows_radiance(a.output);
+    settings.radiance = bright || bright_preview;
+    settings.encoded = !bright || (preview && !bright_preview);
     return settings;
 }
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cli/frame_pattern.h"
 #include "cli/render_plan.h"
+#include "cli/standard_output.h"
 #include "cli/video.h"
 
 namespace peelray {
@@ -69,6 +70,8 @@ void check_single(const RenderArguments& a) {
     if (has_frame_number(a.output))
         fail("'{}' has a place for a frame's number: say which frames with --frames A:B or --turntable N",
              a.output.string());
+    if (is_standard_output(a.output) && !a.aovs.empty())
+        fail("--aov writes files beside the picture, and the standard output has none: name the picture (-o NAME.png)");
     const bool looks_back = wants(a, Aov::motion) || a.denoise == Denoise::temporal;
     const char* option = s.fps && !looks_back ? "--fps" : s.shard ? "--shard" : s.resume ? "--resume" : nullptr;
     if (option)

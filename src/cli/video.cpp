@@ -37,7 +37,7 @@ std::vector<std::string> command_line(const fs::path& ffmpeg, const fs::path& fi
 
     const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
     add({"-xerror"});  // without it a full disk leaves half a .webm and exit status 0
-    add({"-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", size.x, size.y), "-framerate",
+    add({"-f", "rawvideo", "-pix_fmt", "rgb0", "-video_size", fmt::format("{}x{}", size.x, size.y), "-framerate",
          fmt::format("{}", fps), "-i", "pipe:0", "-an"});
     // Players take HD video for BT.709; without these ffmpeg converts by BT.601, and colours shift.
     add({"-vf", "scale=in_range=full:out_range=limited:out_color_matrix=bt709", "-pix_fmt", "yuv420p", "-colorspace",
@@ -129,16 +129,15 @@ void VideoWriter::start(const fs::path& ffmpeg, const fs::path& file, double fps
     }
     // Never blocking, so that an interrupt is seen while ffmpeg is busy.
     ::fcntl(ours.number, F_SETFL, O_NONBLOCK);
+    ::fcntl(ours.number, F_SETPIPE_SZ, 1 << 20);  // where it may: fewer, larger pieces
     input_ = ours.release();
     messages_ = messages.release();
 }
 
 void VideoWriter::add(std::span<const uint32_t> pixels) {
-    bytes_.clear();
-    for (const uint32_t pixel : pixels)
-        for (const int shift : {0, 8, 16}) bytes_ += char(pixel >> shift & 255);
-    for (size_t at = 0; at < bytes_.size();) {
-        const ssize_t written = ::write(input_, bytes_.data() + at, bytes_.size() - at);
+    const std::span<const std::byte> bytes = std::as_bytes(pixels);
+    for (size_t at = 0; at < bytes.size();) {
+        const ssize_t written = ::write(input_, bytes.data() + at, bytes.size() - at);
         if (written > 0) {
             at += size_t(written);
         } else if (errno == EAGAIN || errno == EINTR) {

@@ -45,7 +45,6 @@ class VideoWriter {
     [[noreturn]] void fail_because_it_ended();
 
     glm::uvec2 size_;
-    std::string bytes_;
     pid_t process_ = -1;     ///< -1: not running
     int status_ = 0;         ///< as waitpid() says, once it ended
     int input_ = -1;         ///< its standard input

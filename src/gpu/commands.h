@@ -187,8 +187,13 @@ class Commands {
     template <typename T>
     std::vector<T> download(const Buffer& buffer, uint64_t count, uint64_t offset = 0) {
         std::vector<T> result(count);
-        download_bytes(buffer, std::as_writable_bytes(std::span(result)), offset);
+        download_into(buffer, result, offset);
         return result;
+    }
+    /// As many as there is room for in `out`.
+    template <typename T>
+    void download_into(const Buffer& buffer, std::vector<T>& out, uint64_t offset = 0) {
+        download_bytes(buffer, std::as_writable_bytes(std::span(out)), offset);
     }
 
   private:

@@ -21,15 +21,14 @@ void check_size(std::string_view doing, const std::filesystem::path& path, int64
 /// All bytes of a file or pipe. Throws Error (with the system's reason) if it cannot be read or is empty.
 std::string read_file(const std::filesystem::path& path);
 
-/// Writes all bytes through write_atomically(); a full disk is an Error, too.
-void store_file(const std::filesystem::path& path, std::string_view bytes);
+/// The next bytes of a file, which last until the next call; none: it has ended.
+using NextPart = std::function<std::string_view()>;
+/// store_file() of what need not be in memory as a whole; `size`: bytes in all.
+void store_parts(const std::filesystem::path& path, uint64_t size, const NextPart& next);
 
 /// `note`: what was not understood, if anything.
 Image decode_exr(const std::filesystem::path& path, std::string_view bytes, std::string& note);
-std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full);
 Image decode_radiance(const std::filesystem::path& path, std::string_view bytes);
-std::string encode_radiance(const Image& image);
-/// `path` is where the bytes go to, for the errors.
-std::string encode_png(const std::filesystem::path& path, const Image8& image, bool alpha);
+std::string encode_radiance(const ImageView& image);
 
 }  // namespace peelray

@@ -1,4 +1,4 @@
-// OpenEXR: files of any writer in, our own out.
+// OpenEXR: files of any writer in.
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
@@ -6,7 +6,6 @@
 #include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
@@ -20,6 +19,7 @@
 
 #include "base/error.h"
 #include "image/codecs.h"
+#include "image/exr_errors.h"
 
 namespace peelray {
 namespace {
@@ -41,25 +41,6 @@ class MemoryIn : public Imf::IStream {
   private:
     std::string_view bytes_;
     uint64_t position_ = 0;
-};
-
-class MemoryOut : public Imf::OStream {
-  public:
-    MemoryOut() : OStream("memory") {}
-
-    void write(const char data[], int count) override {
-        const size_t end = position_ + size_t(count);
-        if (end > bytes_.size()) bytes_.resize(end);
-        std::memcpy(bytes_.data() + position_, data, size_t(count));
-        position_ = end;
-    }
-    uint64_t tellp() override { return position_; }
-    void seekp(uint64_t position) override { position_ = position; }
-    const std::string& bytes() const { return bytes_; }
-
-  private:
-    std::string bytes_;
-    size_t position_ = 0;
 };
 
 /// Which channel of the file becomes red, green, blue and alpha; "" : none.
@@ -216,113 +197,10 @@ Image decode(const std::filesystem::path& path, std::string_view bytes, std::str
     return crop_to_display(path, window, part.header().displayWindow(), std::move(image), has_alpha);
 }
 
-/// One channel to write: `data` is of the type, `stride` bytes from pixel to pixel.
-struct Channel {
-    std::string name;
-    Imf::PixelType type;
-    const void* data;
-    size_t stride;
-};
-
-std::string encode(uint32_t width, uint32_t height, const std::vector<Channel>& channels) {
-    Imf::Header header{int(width), int(height)};
-    header.compression() = Imf::ZIP_COMPRESSION;
-    Imf::FrameBuffer buffer;
-    for (const Channel& channel : channels) {
-        header.channels().insert(channel.name, Imf::Channel(channel.type));
-        buffer.insert(channel.name, Imf::Slice::Make(channel.type, channel.data, header.dataWindow(), channel.stride,
-                                                     channel.stride * width));
-    }
-    MemoryOut stream;
-    {
-        Imf::OutputFile file(stream, header);  // completes the line table when it goes
-        file.setFrameBuffer(buffer);
-        file.writePixels(int(height));
-    }
-    return stream.bytes();
-}
-
-/// R, G, B and, unless all of it is 1, A of an image, which must outlive it.
-struct PictureChannels {
-    std::vector<std::array<Imath::half, 4>> halves;
-    std::vector<Channel> channels;
-
-    PictureChannels(const Image& image, bool full) {
-        const bool opaque =
-            std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) { return p.w == 1; });
-        const char* names[] = {"R", "G", "B", "A"};
-        const size_t count = opaque ? 3 : 4;
-        if (!full) {
-            halves.reserve(image.pixels.size());
-            const auto narrow = [](float value) {  // NaN stays: a reader should see it
-                return Imath::half(value > max_half ? max_half : value < -max_half ? -max_half : value);
-            };
-            for (const glm::vec4& p : image.pixels)
-                halves.push_back({narrow(p.x), narrow(p.y), narrow(p.z), narrow(p.w)});
-        }
-        for (size_t c = 0; c < count; ++c) {
-            if (full)
-                channels.push_back({names[c], Imf::FLOAT, &image.pixels[0][int(c)], sizeof(glm::vec4)});
-            else
-                channels.push_back({names[c], Imf::HALF, &halves[0][c], sizeof halves[0]});
-        }
-    }
-    PictureChannels(const PictureChannels&) = delete;
-    PictureChannels& operator=(const PictureChannels&) = delete;
-};
-
-/// Appends channels of floats, which must outlive it.
-void append(std::vector<Channel>& all, const std::vector<std::string>& names,
-            const std::vector<std::vector<float>>& channels, [[maybe_unused]] size_t pixels) {
-    assert(names.size() == channels.size());
-    for (size_t i = 0; i < names.size(); ++i) {
-        assert(channels[i].size() == pixels);
-        all.push_back({names[i], Imf::FLOAT, channels[i].data(), sizeof(float)});
-    }
-}
-
-/// Calls `work` and turns OpenEXR's exceptions into ours, on one line.
-template <typename Work>
-auto guarded(std::string_view doing, const std::filesystem::path& path, Work&& work) {
-    try {
-        return work();
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        fail("cannot {} {}: not enough memory", doing, path.string());
-    } catch (const std::exception& error) {
-        std::string text = error.what();
-        std::replace(text.begin(), text.end(), '\n', ' ');
-        fail("cannot {} {}: OpenEXR says: {}", doing, path.string(), text);
-    }
-}
-
 }  // namespace
 
 Image decode_exr(const std::filesystem::path& path, std::string_view bytes, std::string& note) {
     return guarded("read", path, [&] { return decode(path, bytes, note); });
-}
-
-std::string encode_exr(const std::filesystem::path& path, const Image& image, bool full) {
-    const PictureChannels picture(image, full);
-    return guarded("write", path, [&] { return encode(image.width, image.height, picture.channels); });
-}
-
-void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
-                        const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels) {
-    check_size("write", path, width, height);
-    assert(!names.empty());
-    std::vector<Channel> described;
-    append(described, names, channels, size_t(width) * height);
-    store_file(path, guarded("write", path, [&] { return encode(width, height, described); }));
-}
-
-void write_exr_layers(const std::filesystem::path& path, const Image& image, const std::vector<std::string>& names,
-                      const std::vector<std::vector<float>>& channels) {
-    check_size("write", path, image.width, image.height);
-    PictureChannels picture(image, false);
-    append(picture.channels, names, channels, image.pixels.size());
-    store_file(path, guarded("write", path, [&] { return encode(image.width, image.height, picture.channels); }));
 }
 
 }  // namespace peelray

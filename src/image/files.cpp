@@ -127,15 +127,22 @@ fs::path reserve(const fs::path& path, const fs::path& target, const fs::path& f
 }
 
 /// 0, or the system's error number.
-int write_bytes(const fs::path& path, std::string_view bytes) {
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
-    if (file.number < 0) return errno;
+int write_all(int file, std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
+        const ssize_t written = ::write(file, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return errno;
         bytes.remove_prefix(size_t(written));
     }
+    return 0;
+}
+
+/// 0, or the system's error number.
+int write_parts(const fs::path& path, const NextPart& next) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (file.number < 0) return errno;
+    for (std::string_view part = next(); !part.empty(); part = next())
+        if (const int error = write_all(file.number, part)) return error;
     // Network file systems and quotas report a failed write as late as here.
     return ::close(std::exchange(file.number, -1)) == 0 ? 0 : errno;
 }
@@ -214,9 +221,13 @@ std::string read_file(const fs::path& path) {
 }
 
 void store_file(const fs::path& path, std::string_view bytes) {
+    store_parts(path, bytes.size(), [&] { return std::exchange(bytes, {}); });
+}
+
+void store_parts(const fs::path& path, uint64_t size, const NextPart& next) {
     write_atomically(path, [&](const fs::path& temporary) {
-        if (const int error = write_bytes(temporary, bytes))
-            fail("cannot write {}: {}; {} bytes are needed there", path.string(), reason(error), bytes.size());
+        if (const int error = write_parts(temporary, next))
+            fail("cannot write {}: {}; {} bytes are needed there", path.string(), reason(error), size);
     });
 }
 

@@ -90,13 +90,16 @@ Image read_environment(const std::filesystem::path& path, std::vector<std::strin
     return image;
 }
 
-void write_hdr(const std::filesystem::path& path, const Image& image, bool full) {
+size_t write_hdr(const std::filesystem::path& path, const ImageView& image, const ExrFormat& format) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".exr") return write_exr_layers(path, image, {}, format);
     check_size("write", path, image.width, image.height);
     assert(image.pixels.size() == size_t(image.width) * image.height);
-    const std::string extension = lower_extension(path);
-    if (extension == ".exr") return store_file(path, encode_exr(path, image, full));
-    if (extension == ".hdr") return store_file(path, encode_radiance(image));
-    fail("cannot write {}: the extension '{}' is neither .exr nor .hdr; choose one of them", path.string(), extension);
+    if (extension != ".hdr")
+        fail("cannot write {}: the extension '{}' is neither .exr nor .hdr; choose one of them", path.string(),
+             extension);
+    store_file(path, encode_radiance(image));
+    return 0;
 }
 
 }  // namespace peelray

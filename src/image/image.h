@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,28 @@ struct Image {
 struct Image8 {
     uint32_t width = 0, height = 0;
     std::vector<uint32_t> pixels;  ///< red in the lowest byte
+};
+
+/// The same, kept by somebody else.
+struct ImageView {
+    uint32_t width = 0, height = 0;
+    std::span<const glm::vec4> pixels;
+    ImageView(uint32_t width, uint32_t height, std::span<const glm::vec4> pixels)
+        : width(width), height(height), pixels(pixels) {}
+    ImageView(const Image& image) : ImageView(image.width, image.height, image.pixels) {}
+};
+struct Image8View {
+    uint32_t width = 0, height = 0;
+    std::span<const uint32_t> pixels;
+    Image8View(uint32_t width, uint32_t height, std::span<const uint32_t> pixels)
+        : width(width), height(height), pixels(pixels) {}
+    Image8View(const Image8& image) : Image8View(image.width, image.height, image.pixels) {}
+};
+
+/// How an EXR holds a picture.
+struct ExrFormat {
+    bool half = true;  ///< the channels R, G, B and A are half floats, ±65504 at most, else floats
+    bool zip = true;   ///< ZIP compression, blocks of 16 rows; else none
 };
 
 /// Reads Radiance (.hdr) or OpenEXR (.exr) by its content: RGB(A), Y, luminance-chroma, one channel (grey) or one
@@ -46,23 +69,36 @@ Image read_environment(const std::filesystem::path& path, std::vector<std::strin
 /// Reads PNG or JPEG (any stb-readable LDR format). Throws Error.
 Image8 read_ldr(const std::filesystem::path& path);
 
-/// Writes a float image; the extension chooses .exr (half float, clamped to ±65504; full float if `full`) or .hdr (no
-/// alpha, negative values and NaN become 0). An EXR has an alpha channel only if some alpha is not 1. All writers write
-/// to a temporary name first and rename, so that no partial file is ever seen. Throws Error if unwritable.
-void write_hdr(const std::filesystem::path& path, const Image& image, bool full = false);
+/// Writes a float image; the extension chooses .exr (as `format` says) or .hdr (no alpha, negative values and NaN
+/// become 0). An EXR has an alpha channel only if some alpha is not 1. Returns how many values were beyond what half
+/// floats reach and became ±65504; NaN stays. All writers write to a temporary name first and rename, so that no
+/// partial file is ever seen. Throws Error if unwritable.
+size_t write_hdr(const std::filesystem::path& path, const ImageView& image, const ExrFormat& format = {});
 
-/// Writes one float channel set to EXR: `names` per channel ("R","G","B", "Z", "id" …), `channels[i]` of width·height
-/// values.
+/// A channel ("Z", "id", "normal.X"): width·height floats that somebody else keeps, row 0 first.
+struct ExrChannel {
+    std::string name;
+    const float* data;  ///< a pixel's value is at data[stride * pixel]
+    size_t stride = 1;
+};
+
+/// Writes channels to an EXR, as floats. Of `format` the compression counts.
 void write_exr_channels(const std::filesystem::path& path, uint32_t width, uint32_t height,
-                        const std::vector<std::string>& names, const std::vector<std::vector<float>>& channels);
+                        const std::vector<ExrChannel>& channels, const ExrFormat& format = {});
 
 /// Writes a picture to EXR as write_hdr() does and, into the same file, more channels as write_exr_channels() does:
 /// what comes before the last dot of their names is their layer ("normal.X").
-void write_exr_layers(const std::filesystem::path& path, const Image& image, const std::vector<std::string>& names,
-                      const std::vector<std::vector<float>>& channels);
+size_t write_exr_layers(const std::filesystem::path& path, const ImageView& image,
+                        const std::vector<ExrChannel>& channels, const ExrFormat& format = {});
 
-/// Writes an 8-bit PNG. `alpha` false drops the alpha channel.
-void write_png(const std::filesystem::path& path, const Image8& image, bool alpha = false);
+/// Writes an 8-bit PNG. `alpha` false drops the alpha channel. The same pixels make the same bytes.
+void write_png(const std::filesystem::path& path, const Image8View& image, bool alpha = false);
+
+/// The bytes of such a file; `path` is where they go to, for the errors.
+std::string encode_png(const std::filesystem::path& path, const Image8View& image, bool alpha = false);
+
+/// Writes all bytes, under a temporary name first. Throws Error if unwritable, on a full disk as well.
+void store_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Fails early, before long work: throws Error if a file cannot be created at `path` (not writable, is a folder, has a
 /// file where a folder must be). Leaves nothing behind and does not touch a file that is there.

@@ -202,7 +202,7 @@ std::string note_list(const std::vector<std::string>& notes) {
 }
 
 std::string data_uri(const std::filesystem::path& path, const Image8& image) {
-    return "data:image/png;base64," + base64(encode_png(path, image, false));
+    return "data:image/png;base64," + base64(encode_png(path, image));
 }
 
 std::string figure(const std::filesystem::path& path, std::string_view kind, const std::string& name,

@@ -1,4 +1,4 @@
-// PNG, JPEG and the like through stb. Static: libtinygltf carries a copy of its own.
+// PNG, JPEG and the like in, Radiance out, through stb. Static: libtinygltf carries a copy of its own.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_HDR
@@ -13,7 +13,6 @@
 #pragma GCC diagnostic pop
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -79,28 +78,7 @@ Image8 read_ldr(const std::filesystem::path& path) {
     return image;
 }
 
-std::string encode_png(const std::filesystem::path& path, const Image8& image, bool alpha) {
-    check_size("write", path, image.width, image.height);
-    assert(image.pixels.size() == size_t(image.width) * image.height);
-    const size_t components = alpha ? 4 : 3;
-    if (image.pixels.size() * components > size_t(std::numeric_limits<int>::max()))
-        fail("cannot write {}: {} x {} pixels are too many for a PNG here; write .exr", path.string(), image.width,
-             image.height);
-    std::vector<uint8_t> packed(image.pixels.size() * components);
-    for (size_t i = 0; i < image.pixels.size(); ++i)
-        for (size_t c = 0; c < components; ++c) packed[i * components + c] = uint8_t(image.pixels[i] >> (8 * c));
-    std::string bytes;
-    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), int(components), packed.data(),
-                                int(image.width * components)))
-        fail("cannot write {}: not enough memory to compress {} x {} pixels", path.string(), image.width, image.height);
-    return bytes;
-}
-
-void write_png(const std::filesystem::path& path, const Image8& image, bool alpha) {
-    store_file(path, encode_png(path, image, alpha));
-}
-
-std::string encode_radiance(const Image& image) {
+std::string encode_radiance(const ImageView& image) {
     std::vector<float> packed;
     packed.reserve(image.pixels.size() * 3);
     // RGBE knows no sign and no infinity; 1e38 is safely below its largest exponent. NaN fails the comparison.

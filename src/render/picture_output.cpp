@@ -30,7 +30,8 @@ void PictureOutput::prepare(const PictureSettings& settings, bool unlit, bool op
 
 void PictureOutput::record_accumulation(Commands& commands, const PathQueues& queues, const Buffer& frame,
                                         const LevelParams& p, const PictureSettings& settings) {
-    const bool encodes = !open_ && !denoiser_ && post_passes_.empty() && p.sample_index + 1 == settings.spp;
+    const bool encodes =
+        settings.encoded && !open_ && !denoiser_ && post_passes_.empty() && p.sample_index + 1 == settings.spp;
     commands.run(device_.pass("accumulate", {{"has_unlit", has_unlit_}, {"has_moments", settings.moments}}),
                  {{"frame", frame},
                   {"nodes", queues.level(0).nodes},
@@ -61,7 +62,7 @@ bool PictureOutput::record_post(Commands& commands, const PictureSettings& setti
         commands.run(device_.pass("unlit_share"), {{"picture", picture_}, {"unlit", unlit_}},
                      uint32_t(pixels_of(settings)), groups_for(pixels_of(settings), 64));
     for (const PostPass& pass : post_passes_) pass(commands, picture_, settings);
-    record_encoding(commands, settings, posts);
+    if (settings.encoded) record_encoding(commands, settings, posts);
     return true;
 }
 
@@ -79,13 +80,32 @@ void PictureOutput::download_picture(Commands& commands, const PictureSettings& 
     out.width = settings.width;
     out.height = settings.height;
     out.transparent = settings.backdrop.is_transparent();
-    out.radiance = commands.download<glm::vec4>(picture_, pixels_of(settings));
-    for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
-    out.encoded = commands.download<uint32_t>(encoded_, pixels_of(settings));
+    out.radiance.resize(settings.radiance ? pixels_of(settings) : 0);
+    out.encoded.resize(settings.encoded ? pixels_of(settings) : 0);
+    if (settings.radiance) download_radiance(commands, settings, out);
+    if (settings.encoded) commands.download_into(encoded_, out.encoded);
 }
 
-void PictureOutput::download(Commands& commands, const PictureSettings& settings, Picture& out) const {
+void PictureOutput::download_radiance(Commands& commands, const PictureSettings& settings, Picture& out) const {
+    out.radiance.resize(pixels_of(settings));
+    commands.download_into(picture_, out.radiance);
+    if (settings.spp == 1) return;
+    for (glm::vec4& pixel : out.radiance) pixel /= float(settings.spp);
+}
+
+double PictureOutput::seen(Commands& commands, const PictureSettings& settings) {
+    ensure_size(device_, seen_rows_, "what is seen in each row", settings.height * sizeof(float));
+    commands.run(device_.pass("seen_rows"), {{"picture", picture_}, {"rows", seen_rows_}},
+                 glm::uvec2(settings.width, settings.height), groups_for(settings.height, 1));
+    double sum = 0;
+    for (const float row : commands.download<float>(seen_rows_, settings.height)) sum += double(row);
+    return sum / (double(pixels_of(settings)) * settings.spp);
+}
+
+void PictureOutput::download(Commands& commands, const PictureSettings& settings, Picture& out) {
     download_picture(commands, settings, out);
+    out.seen.reset();
+    if (settings.seen && !settings.radiance) out.seen = seen(commands, settings);
     if (!settings.moments) return;
     for (const glm::vec2& moments : commands.download<glm::vec2>(moments_, pixels_of(settings)))
         out.aovs.variance.push_back(variance_of_mean(moments.y, settings.spp));

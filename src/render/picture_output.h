@@ -38,7 +38,10 @@ class PictureOutput {
     /// encoding. False: nothing was left to do. From here on the `spp` of settings is the number of samples that the
     /// picture has.
     bool record_post(Commands& commands, const PictureSettings& settings);
-    void download(Commands& commands, const PictureSettings& settings, Picture& out) const;
+    /// What the settings want. Vectors that are large enough already are filled as they are.
+    void download(Commands& commands, const PictureSettings& settings, Picture& out);
+    /// Picture::radiance, wanted or not.
+    void download_radiance(Commands& commands, const PictureSettings& settings, Picture& out) const;
     /// Between two samples: the picture so far, before post passes. Submits.
     Picture look(Commands& commands, const PictureSettings& settings) const;
     /// With PictureSettings::moments: noise_of() the samples so far.
@@ -56,6 +59,7 @@ class PictureOutput {
 
   private:
     void record_encoding(Commands& commands, const PictureSettings& settings, bool shares) const;
+    double seen(Commands& commands, const PictureSettings& settings);
     void download_picture(Commands& commands, const PictureSettings& settings, Picture& out) const;
 
     Device& device_;
@@ -64,7 +68,7 @@ class PictureOutput {
     /// Gives the picture's values to the parts of a display: without what is unlit, nothing of `unlit_` is read.
     Binding unlit() const { return Binding::if_used("unlit", has_unlit_ ? &unlit_ : nullptr); }
 
-    Buffer picture_, encoded_;
+    Buffer picture_, encoded_, seen_rows_;
     Buffer unlit_;    ///< vec3 of each pixel: what it sees of unlit surfaces; for post passes its share of the picture
     Buffer moments_;  ///< see moments()
     bool has_unlit_ = false, open_ = false;

@@ -93,6 +93,7 @@ struct Renderer::Impl {
     RayCounts rays;
     PictureSettings made;  ///< those of the settings; spp: the samples that there are
     SamplesMade samples;
+    Picture spare;  ///< of which the memory is free
     uint32_t moved = 0;
     bool maps_moved = false;
     uint32_t most_rows = 1u << 20;  ///< of a band: of higher ones the queues found no room
@@ -489,6 +490,8 @@ RenderResult Renderer::render(const RenderSettings& settings, const PictureWatch
     measurement.describe(stats);
     r.describe(stats);
     result.rays = r.rays;
+    result.radiance = std::move(r.spare.radiance);
+    result.encoded = std::move(r.spare.encoded);
     r.output.download(r.f.commands, r.made, result);
     result.samples = r.samples;
     if (settings.aovs) r.aovs.render(r.f, result.aovs);
@@ -498,6 +501,14 @@ RenderResult Renderer::render(const RenderSettings& settings, const PictureWatch
     stats.memory = device.allocations();
     stats.peak_memory = device.peak_allocations();
     return result;
+}
+
+void Renderer::reuse(Picture picture) {
+    impl_->spare = std::move(picture);
+}
+
+void Renderer::add_radiance(Picture& picture) {
+    impl_->output.download_radiance(impl_->f.commands, impl_->made, picture);
 }
 
 }  // namespace peelray

@@ -39,6 +39,11 @@ class Renderer {
     /// Throws Error for impossible settings (naming the option) or when the device's limits or memory do not do.
     RenderResult render(const RenderSettings& settings, const PictureWatch& watch = {});
 
+    /// Gives back a picture that is not needed any more: the next one takes over its memory.
+    void reuse(Picture picture);
+    /// Adds the radiance to the last picture of render(), where PictureSettings::radiance was false.
+    void add_radiance(Picture& picture);
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

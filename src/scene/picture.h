@@ -62,6 +62,9 @@ struct PictureSettings {
     bool ray_setup = false;  ///< and those of Aovs from `reflection` on
     bool motion = false;     ///< and Aovs::motion, which else is 0
     bool moments = false;    ///< also those of SAMPLE_AOVS, whether there are others or not
+    /// What is wanted of Picture: a device does not hand over what is not.
+    bool radiance = true, encoded = true;
+    bool seen = false;  ///< also Picture::seen, where radiance is not wanted
     Denoise denoise = Denoise::none;
     int64_t number = 0;    ///< with Denoise::temporal: of the picture, in the order of the moments
     Camera camera_before;  ///< for `motion` and Denoise::temporal: where the camera was at the moment before
@@ -139,6 +142,7 @@ struct Picture {
     /// colour.
     std::vector<uint32_t> encoded;
     bool transparent = false;
+    std::optional<double> seen;  ///< the mean of the radiance's alpha, for those who have no radiance
     Aovs aovs;
     RayCounts rays;
 };

@@ -18,6 +18,20 @@ struct Named {
     const char* name;
 };
 
+enum class YesNo : uint8_t { yes, no };
+constexpr auto names_of(YesNo) {
+    return std::to_array<Named<YesNo>>({{YesNo::yes, "yes"}, {YesNo::no, "no"}});
+}
+
+/// Of an EXR.
+enum class Compression : uint8_t {
+    zip,  ///< blocks of 16 rows
+    none,
+};
+constexpr auto names_of(Compression) {
+    return std::to_array<Named<Compression>>({{Compression::zip, "zip"}, {Compression::none, "none"}});
+}
+
 /// Who answers for what a surface mirrors, lets through and has in its way to the light.
 enum class Tracer : uint8_t {
     ldc,        ///< rays in the layered depth cube

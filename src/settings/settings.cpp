@@ -85,7 +85,7 @@ SettingList sequence_settings(SequenceArguments& a) {
                  .group = group,
                  .help = "the frames A, A+1, ..., B-1 of the animation (without B); frame k shows the moment k/F "
                          "seconds. The output is then a name with one number, such as frame_%05d.exr, or a video, "
-                         ".mp4 or .webm",
+                         ".mp4, .webm or -",
                  .form = "A:B",
                  .expected = "a range of frames A:B, such as 0:48",
                  .changes_picture = false});

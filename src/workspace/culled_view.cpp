@@ -105,6 +105,7 @@ class Looks {
 }  // namespace
 
 double seen_share(const Picture& picture) {
+    if (picture.seen) return *picture.seen;
     double sum = 0;
     for (const glm::vec4& pixel : picture.radiance) sum += double(pixel.w);
     return picture.radiance.empty() ? 0 : sum / double(picture.radiance.size());

@@ -57,6 +57,10 @@ void Workspace::renew_device() {
     noted_ = {};
 }
 
+void Workspace::reuse(Picture picture) {
+    if (renderer_) renderer_->reuse(std::move(picture));
+}
+
 void Workspace::check_validation() const {
     if (device_) device_->check_validation();
 }
@@ -85,6 +89,7 @@ MadePicture Workspace::render(RenderSettings settings, const Shot& given, const 
     const WarmUp warm = is_temporal(settings) ? warm_up(settings, shot, interrupts.progress) : WarmUp{};
     share_before = double(warm.pictures) / (warm.pictures + 1);
     const RenderSettings asked = settings;
+    settings.seen = may_note_culled();
     const std::unique_ptr<PosedScene::Glimpse> before = pose(settings, shot);
     if (is_temporal(settings)) kept_.begin(shot);
     MadePicture made = is_on_cpu(settings.tracer) ? cpu_picture(scene_, settings, interrupts, past_for(settings))
@@ -163,12 +168,17 @@ CpuPast* Workspace::past_for(const RenderSettings& settings) {
     return past_.get();
 }
 
+bool Workspace::may_note_culled() const {
+    return !noted_.culled && has_single_sided(scene_.scene());
+}
+
 /// Says so, once, where the camera sees nothing because it is behind what it looks at. What would be seen is looked at
 /// only where next to nothing is.
-void Workspace::note_culled(const PictureSettings& settings, const Picture& picture) {
-    if (noted_.culled || !has_single_sided(scene_.scene())) return;
+void Workspace::note_culled(const PictureSettings& settings, Picture& picture) {
+    if (!may_note_culled()) return;
     const double seen = seen_share(picture);
     if (seen > kMostSeenInNote) return;
+    if (picture.radiance.empty()) renderer_->add_radiance(picture);
     const std::string text = culled_note(seen, culled_share(scene_.scene(), scene_.geometry(), settings, picture));
     if (text.empty()) return;
     noted_.culled = true;

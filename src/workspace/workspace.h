@@ -43,6 +43,9 @@ class Workspace {
     /// interrupts are not looked for any more once a pass is whole: that is left to it.
     MadePicture render(RenderSettings settings, const Shot& shot = {}, const PictureWatch& watch = {});
 
+    /// Gives back a picture that is not needed any more: the next one that a device makes takes over its memory.
+    void reuse(Picture picture);
+
     /// Throws Error where a tracer cannot render on this device.
     void check(Tracer tracer);
     /// The name of what renders for a tracer: of a device, or of a library where pictures do not depend on the machine.
@@ -71,7 +74,8 @@ class Workspace {
     void note_environment();
     void note_uncaught(const PictureSettings& settings);
     MadePicture render_on_device(const RenderSettings& settings, const PictureWatch& watch);
-    void note_culled(const PictureSettings& settings, const Picture& picture);
+    bool may_note_culled() const;
+    void note_culled(const PictureSettings& settings, Picture& picture);
 
     PictureArguments settings_;
     Notes notes_;

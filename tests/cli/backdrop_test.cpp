@@ -196,7 +196,7 @@ TEST_F(Backdrops, OddEnvironmentsMakePictures) {
     write_hdr(
         in("odd.exr"),
         Image{3, 2, {{1, 2, 3, 1}, {nan, 2, 3, 1}, {1, -2, 3, 1}, {1, 2, infinite, 1}, {0, 0, 0, 1}, {1, 1, 1, 1}}},
-        true);
+        {.half = false});
     write_hdr(in("one.exr"), Image{1, 1, {{1, 2, 3, 1}}});
     write_hdr(in("black.exr"), Image{8, 4, std::vector<glm::vec4>(32, glm::vec4(0, 0, 0, 1))});
     for (const std::string tracer : {"ldc", "reference"})

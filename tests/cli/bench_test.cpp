@@ -232,5 +232,38 @@ TEST_F(Bench, ImpossibleValues) {
     }
 }
 
+using SequenceBench = SequenceTest;
+
+TEST_F(SequenceBench, MeasuresEveryWayAndLeavesNothing) {
+    const fs::path temporary = folder / "temporary";
+    fs::create_directory(temporary);
+    const Outcome run = this->run(
+        {"bench", "--sequence", "--scenes", "blob:500", "--size", "64x48", "--repeat", "5", "--out", out("b.json")},
+        {{"TMPDIR", temporary.string()}});
+    expect_done(run, {"b.json"});
+    EXPECT_TRUE(fs::is_empty(temporary));
+    const Json json = Json::parse(get(out("b.json")));
+    EXPECT_EQ(json["benchmark"], "sequence");
+    EXPECT_TRUE(json["complete"]);
+    const std::vector<std::string> ways = {"rendered only", "PNG files", "PNG encoder alone", "y4m into nothing",
+                                           "y4m conversion alone"};
+    ASSERT_EQ(json["rows"].size(), ways.size());
+    for (size_t i = 0; i < ways.size(); i++) {
+        const Json& row = json["rows"][i];
+        EXPECT_EQ(row["way"], ways[i]);
+        EXPECT_NEAR(row["frames_per_second"].get<double>() * row["seconds"].get<double>(), 5, 1e-6);
+        EXPECT_EQ(row["rendering_seconds"] > 0, i != 2 && i != 4) << "encoders render nothing";
+        EXPECT_EQ(row["encoding_thread_seconds"] > 0, i > 0);
+        EXPECT_EQ(row["writing_thread_seconds"] > 0, i == 1 || i == 3);
+    }
+    EXPECT_EQ(table_of(run.out).size(), 2 + ways.size());
+}
+
+TEST_F(SequenceBench, WhatItCannotMeasureIsSaid) {
+    expect_refused(run({"bench", "--sequence", "--size", "63x48"}), 1, "width and height must be even");
+    expect_refused(run({"bench", "--sequence", "--quick"}), 2, "--quick");
+    expect_refused(run({"bench", "--sequence"}, {{"TMPDIR", in("nowhere")}}), 1, "TMPDIR");
+}
+
 }  // namespace
 }  // namespace peelray

@@ -53,7 +53,7 @@ TEST_F(Video, FfmpegGetsTheFramesAndTheSettings) {
         };
         EXPECT_NE(arguments.find("\n-xerror\n"), std::string::npos) << arguments;
         expect_pair("-f", "rawvideo");
-        expect_pair("-pix_fmt", "rgb24");
+        expect_pair("-pix_fmt", "rgb0");
         expect_pair("-video_size", "64x48");
         expect_pair("-framerate", "12.5");
         expect_pair("-pix_fmt", "yuv420p");
@@ -65,13 +65,11 @@ TEST_F(Video, FfmpegGetsTheFramesAndTheSettings) {
         }
         // The pixels of the same frames as pictures.
         const std::string bytes = get(in("bytes"));
-        ASSERT_EQ(bytes.size(), 3u * 64 * 48 * 3);
+        ASSERT_EQ(bytes.size(), 3u * 64 * 48 * 4);
         ASSERT_EQ(sequence("f%d.png", {"--frames", "0:3", "--tracer", "none", "--fps", "12.5"}).status, 0);
         for (size_t k = 0; k < 3; k++) {
             const Image8 frame = read_ldr(out(fmt::format("f{}.png", k)));
-            std::string pixels;
-            for (const uint32_t pixel : frame.pixels)
-                for (const int shift : {0, 8, 16}) pixels += char(pixel >> shift & 255);
+            const std::string pixels = bytes_of(frame.pixels);
             EXPECT_TRUE(bytes.substr(k * pixels.size(), pixels.size()) == pixels) << k;
         }
     }

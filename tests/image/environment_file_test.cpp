@@ -22,19 +22,19 @@ TEST_F(EnvironmentFile, WhatIsNoRadianceIsCountedAndBlack) {
                      {1, 2, infinite, 1},
                      {-infinite, 2, 3, 1},
                      {1e13f, 0, 0, 1}}},
-              true);
+              {.half = false});
     std::vector<std::string> notes;
     const Image image = read_environment(folder / "a.exr", notes);
     EXPECT_EQ(image.pixels, (std::vector<glm::vec4>{
                                 {1, 2, 3, 1}, {0, 0, 0, 1}, {1, 0, 3, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}));
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_EQ(notes[0], "a.exr: 5 texels are negative, infinite or not a number: what is wrong of them counts as 0");
-    write_hdr(folder / "b.exr", Image{2, 1, {{1, 2, 3, 1}, {0, -1, 0, 1}}}, true);
+    write_hdr(folder / "b.exr", Image{2, 1, {{1, 2, 3, 1}, {0, -1, 0, 1}}}, {.half = false});
     notes.clear();
     read_environment(folder / "b.exr", notes);
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_EQ(notes[0], "b.exr: 1 texel is negative, infinite or not a number: what is wrong of it counts as 0");
-    write_hdr(folder / "c.exr", Image{1, 1, {{0, 0, 0, 0}}}, true);
+    write_hdr(folder / "c.exr", Image{1, 1, {{0, 0, 0, 0}}}, {.half = false});
     notes.clear();
     EXPECT_EQ(read_environment(folder / "c.exr", notes).pixels, (std::vector<glm::vec4>{{0, 0, 0, 1}}));
     EXPECT_TRUE(notes.empty());

@@ -141,7 +141,7 @@ TEST_F(Files, AFullDiskIsAnErrorAndLeavesNothing) {
     Image noise{64, 64, {}};
     for (uint32_t i = 0; i < 64 * 64; ++i)
         noise.pixels.emplace_back(float(i * 2654435761u >> 8), float(i % 77), float(i), 1);
-    expect_error([&] { write_hdr(folder / "big.exr", noise, true); }, "File too large");
+    expect_error([&] { write_hdr(folder / "big.exr", noise, {.half = false}); }, "File too large");
     expect_error([&] { write_hdr(folder / "big.hdr", noise); }, "File too large");
     ::setrlimit(RLIMIT_FSIZE, &old);
     std::signal(SIGXFSZ, old_handler);

@@ -87,7 +87,7 @@ TEST_F(Hdr, ExrFloatIsExactAndHalfNearlySo) {
     write_hdr(folder / "half.EXR", image);
     expect_close(image, read_hdr(folder / "half.EXR"), 1 / 2048.0f);
     image.at(3, 4) = {1e30f, 1e-30f, 70000, 0.25f};
-    write_hdr(folder / "full.exr", image, true);
+    write_hdr(folder / "full.exr", image, {.half = false});
     EXPECT_EQ(read_hdr(folder / "full.exr").pixels, image.pixels);
     EXPECT_EQ(files(), 2u);
 }
@@ -111,7 +111,7 @@ TEST_F(Hdr, RadianceTakesNoNonsense) {
 }
 
 TEST_F(Hdr, ReadingSanitises) {
-    write_hdr(folder / "a.exr", Image{2, 1, {{nan, infinite, -infinite, nan}, {-1, 5, 1e30f, 1}}}, true);
+    write_hdr(folder / "a.exr", Image{2, 1, {{nan, infinite, -infinite, nan}, {-1, 5, 1e30f, 1}}}, {.half = false});
     const Image read = read_hdr(folder / "a.exr");
     EXPECT_EQ(read.pixels[0], glm::vec4(0, 65504, 0, 0));
     EXPECT_EQ(read.pixels[1], glm::vec4(0, 5, 1e30f, 1));
@@ -429,8 +429,8 @@ TEST_F(Hdr, ReadsXyzAndDividesFactorsOut) {
 }
 
 TEST_F(Hdr, WritesFloatChannels) {
-    write_exr_channels(folder / "aov.exr", 3, 2, {"Z", "id"},
-                       {{1, 2, infinite, 4, 5, 1e30f}, {0, 1, 2, 3, 4, 16777215}});
+    const float depths[] = {1, 2, infinite, 4, 5, 1e30f}, pairs[] = {9, 0, 9, 1, 9, 2, 9, 3, 9, 4, 9, 16777215};
+    write_exr_channels(folder / "aov.exr", 3, 2, {{"Z", depths}, {"id", pairs + 1, 2}});
     Imf::InputFile file((folder / "aov.exr").c_str());
     ASSERT_NE(file.header().channels().findChannel("Z"), nullptr);
     EXPECT_EQ(file.header().channels().findChannel("id")->type, Imf::FLOAT);
@@ -442,8 +442,8 @@ TEST_F(Hdr, WritesFloatChannels) {
     file.readPixels(0, 1);
     EXPECT_EQ(z, (std::vector<float>{1, 2, infinite, 4, 5, 1e30f}));
     EXPECT_EQ(id[5], 16777215);
-    expect_error([&] { write_exr_channels(folder / "b.exr", 0, 2, {"Z"}, {{}}); }, "empty");
-    expect_error([&] { write_exr_channels("/proc/b.exr", 1, 1, {"Z"}, {{1}}); }, "/proc/b.exr");
+    expect_error([&] { write_exr_channels(folder / "b.exr", 0, 2, {{"Z", depths}}); }, "empty");
+    expect_error([&] { write_exr_channels("/proc/b.exr", 1, 1, {{"Z", depths}}); }, "/proc/b.exr");
     EXPECT_EQ(files(), 1u);
 }
 

@@ -158,7 +158,7 @@ std::vector<Sample> meshopt_samples() {
 Sample written_picture(const std::string& name, const Image& image, bool full) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("peelray_sample_{}_{}", getpid(), name);
-    write_hdr(file, image, full);
+    write_hdr(file, image, {.half = !full});
     std::ifstream stream(file, std::ios::binary);
     Sample sample{name, {std::istreambuf_iterator<char>(stream), {}}};
     std::filesystem::remove(file);

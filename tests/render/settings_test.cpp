@@ -225,5 +225,47 @@ TEST_F(SettingsTest, RaysAreNeededWhereAnEffectTracesThem) {
     EXPECT_TRUE(needs_rays(settings, false)) << "counts are asked for, of no rays";
 }
 
+/// What is not wanted does not come; what comes is the same, also in another picture's memory.
+TEST_F(SettingsTest, OnlyWhatIsWantedIsHandedOver) {
+    Stage stage;
+    stage.add(parallelogram({0, 0, 0}, {1.7f, 0, 0}, {0, 1.3f, 0}), emitting(glm::vec3(0.5f, 0.25f, 1)));
+    for (const uint32_t spp : {1u, 5u}) {
+        RenderSettings settings = settings_for(orthographic({1, 1, 3}, {1, 1, 0}, 2), 67);
+        settings.spp = spp;
+        const auto renderer = renderer_for(stage, black);
+        const RenderResult all = renderer->render(settings);
+        EXPECT_FALSE(all.seen);
+        double share = 0;
+        for (const glm::vec4& pixel : all.radiance) share += double(pixel.w) / double(all.radiance.size());
+        ASSERT_GT(share, 0.3);
+        ASSERT_LT(share, 0.9);
+
+        settings.radiance = false;
+        settings.seen = true;
+        RenderResult encoded = renderer->render(settings);
+        EXPECT_TRUE(encoded.radiance.empty());
+        EXPECT_EQ(encoded.encoded, all.encoded);
+        ASSERT_TRUE(encoded.seen);
+        EXPECT_NEAR(*encoded.seen, share, 1e-6);
+        renderer->add_radiance(encoded);
+        EXPECT_EQ(encoded.radiance, all.radiance);
+
+        const uint32_t* memory = encoded.encoded.data();
+        std::ranges::fill(encoded.encoded, 1u);
+        renderer->reuse(std::move(encoded));
+        const RenderResult again = renderer->render(settings);
+        EXPECT_EQ(again.encoded.data(), memory);
+        EXPECT_EQ(again.encoded, all.encoded);
+        EXPECT_TRUE(again.radiance.empty());
+
+        settings.radiance = true;
+        settings.encoded = false;
+        const RenderResult radiance = renderer->render(settings);
+        EXPECT_TRUE(radiance.encoded.empty());
+        EXPECT_EQ(radiance.radiance, all.radiance);
+        EXPECT_FALSE(radiance.seen) << "the radiance tells";
+    }
+}
+
 }  // namespace
 }  // namespace peelray

@@ -70,14 +70,28 @@ TEST_F(Outputs, FoldersAreMadeWhenAFileIsWritten) {
 }
 
 TEST(PictureFiles, FormatsFollowFromTheName) {
-    for (const char* name : {"a.png", "a.exr", "a.hdr", "a.PNG", "b.tiff.Exr"})
-        EXPECT_NO_THROW(check_picture_name(name, false, false)) << name;
+    const auto checked = [](const char* name, bool layers, bool transparent) {
+        RenderArguments a;
+        a.output = name;
+        a.exr_layers = layers;
+        if (transparent) a.background.emplace();
+        check_picture_name(a);
+    };
+    for (const char* name : {"a.png", "a.exr", "a.hdr", "a.PNG", "b.tiff.Exr", "-"})
+        EXPECT_NO_THROW(checked(name, false, false)) << name;
     for (const char* name : {"a", "a.jpg", "png", ".png", "a.png.", "a.png/b"})
-        expect_error([&] { check_picture_name(name, false, false); }, "name it .png, .exr or .hdr");
-    EXPECT_NO_THROW(check_picture_name("a.exr", true, true));
-    EXPECT_THROW(check_picture_name("a.png", true, false), Error) << "only an EXR has layers";
-    EXPECT_NO_THROW(check_picture_name("a.png", false, true));
-    expect_error([&] { check_picture_name("a.hdr", false, true); }, "--background transparent needs an alpha channel");
+        expect_error([&] { checked(name, false, false); }, "name it .png, .exr or .hdr");
+    EXPECT_NO_THROW(checked("a.exr", true, true));
+    EXPECT_THROW(checked("a.png", true, false), Error) << "only an EXR has layers";
+    EXPECT_NO_THROW(checked("a.png", false, true));
+    expect_error([&] { checked("a.hdr", false, true); }, "--background transparent needs an alpha channel");
+}
+
+TEST(PictureFiles, WhatIsShownFollowsFromTheName) {
+    EXPECT_TRUE(shows_radiance("a.exr"));
+    EXPECT_TRUE(shows_radiance("a.HDR"));
+    EXPECT_FALSE(shows_radiance("a.png"));
+    EXPECT_FALSE(shows_radiance("-"));
 }
 
 TEST(PictureFiles, AuxiliaryPicturesStandBesideThePicture) {
@@ -106,8 +120,8 @@ TEST_F(Outputs, APictureIsWrittenWithAllThatGoesWithIt) {
     picture.aovs.costs.resize(2);
     picture.aovs.costs[0].steps = 3;
     picture.aovs.costs[1].steps = 6;
-    write_picture(picture, {Aov::depth, Aov::cost_steps}, false, folder / "a.png");
-    write_picture(picture, {}, false, folder / "b.exr");
+    write_picture(picture, {{Aov::depth, Aov::cost_steps}, false, {}}, folder / "a.png");
+    write_picture(picture, {}, folder / "b.exr");
     EXPECT_EQ(files(), 5u);
     EXPECT_EQ(read_ldr(folder / "a.png").pixels, picture.encoded);
     EXPECT_EQ(read_hdr(folder / "b.exr").pixels, picture.radiance);
