@@ -141,6 +141,9 @@ class Device {
     bool immediate = false;
     DeviceFeatures features;  ///< tests turn some off
     bool labels = false;      ///< VK_EXT_debug_utils is on: passes name themselves
+    /// Traversals are compiled for the very number of instances up to this; beyond, for any. Tests of pictures lower
+    /// it: each number is compiled for seconds on a CPU.
+    uint32_t counted_instances = 8;
     /// Bound where a variant of a shader does not use a buffer that it declares (Binding::if_used). Those that the
     /// shader could write have one of their own: by what is declared alone, a write that nobody does would otherwise
     /// seem to need a barrier before the reads that nobody does.

@@ -4,6 +4,7 @@
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "base/error.h"
+#include "gpu/specialize.h"
 
 namespace peelray {
 namespace {
@@ -21,7 +22,8 @@ std::span<const uint32_t> find_shader(std::string_view name) {
 
 }  // namespace
 
-Specialization::Specialization(std::string_view pass, const ShaderInterface& interface, const Constants& constants) {
+std::map<uint32_t, uint32_t> numbered(std::string_view pass, const ShaderInterface& interface,
+                                      const Constants& constants) {
     const auto with_name = [](std::string_view name) {
         return [=](const auto& constant) { return constant.name == name; };
     };
@@ -31,14 +33,14 @@ Specialization::Specialization(std::string_view pass, const ShaderInterface& int
         if (std::ranges::count_if(constants, with_name(given.name)) > 1)
             fail("the pass {} was given the constant '{}' twice (a programming error)", pass, given.name);
     }
+    std::map<uint32_t, uint32_t> values;
     for (const ShaderConstant& wanted : interface.constants) {
         const auto given = std::ranges::find_if(constants, with_name(wanted.name));
         if (given == constants.end())
             fail("the pass {} was not given the constant '{}' (a programming error)", pass, wanted.name);
-        entries_.push_back({wanted.id, uint32_t(values_.size() * 4), 4});
-        values_.push_back(given->value);
+        values[wanted.id] = given->value;
     }
-    info_ = {uint32_t(entries_.size()), entries_.data(), values_.size() * 4, values_.data()};
+    return values;
 }
 
 void register_shaders(std::span<const EmbeddedShader> shaders) {
@@ -111,18 +113,18 @@ uint32_t PassBase::add_stage(VkShaderStageFlagBits bit, std::string_view shader)
 }
 
 std::vector<VkPipelineShaderStageCreateInfo> PassBase::create_stages(const Constants& constants) {
-    specialization_.emplace(name_, interface_, constants);
+    const auto values = numbered(name_, interface_, constants);
     create_layout();
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     for (const Stage& stage : added_) {
-        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, stage.code.size_bytes(),
-                                      stage.code.data()};
+        const std::vector<uint32_t> code = specialize(stage.code, values);
+        const VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0,
+                                            code.size() * sizeof(uint32_t), code.data()};
         VkShaderModule module = VK_NULL_HANDLE;
         const VkResult result = device_.vk.vkCreateShaderModule(device_.handle, &info, nullptr, &module);
         if (result != VK_SUCCESS) destroy_modules(stages);
         check_vulkan(result, "loading the shader " + name_);
-        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit, module, "main",
-                          specialization_->info()});
+        stages.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, stage.bit, module, "main"});
     }
     return stages;
 }

@@ -1,7 +1,7 @@
 // A pass: one shader, the bindings that reflection finds in it, one pipeline.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,20 +48,10 @@ inline VkDescriptorType descriptor_type(const ShaderBinding& binding) {
                              : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-/// The values of a pass's specialisation constants, as Vulkan takes them.
-class Specialization {
-  public:
-    /// Each constant of the interface must be given once, by its name, and no other; else throws Error naming `pass`.
-    Specialization(std::string_view pass, const ShaderInterface& interface, const Constants& constants);
-    Specialization(const Specialization&) = delete;
-    Specialization& operator=(const Specialization&) = delete;
-    const VkSpecializationInfo* info() const { return &info_; }
-
-  private:
-    std::vector<VkSpecializationMapEntry> entries_;
-    std::vector<uint32_t> values_;
-    VkSpecializationInfo info_{};
-};
+/// Values by constant_id. Each constant of the interface must be given once, by its name, and no other; else throws
+/// Error naming `pass`.
+std::map<uint32_t, uint32_t> numbered(std::string_view pass, const ShaderInterface& interface,
+                                      const Constants& constants);
 
 /// The part that every kind of pass shares: layout and pipeline.
 class PassBase {
@@ -101,7 +91,6 @@ class PassBase {
     void create_layout();
 
     std::vector<Stage> added_;
-    std::optional<Specialization> specialization_;
 };
 
 /// A compute pass (see Commands::run).

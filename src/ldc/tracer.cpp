@@ -28,12 +28,13 @@ static Constants walk_constants(const TracedScene& scene, HitTest test, bool cou
 Constants traversal_constants(const Device& device, const TracedScene& scene, HitTest test, bool counting) {
     Constants constants = walk_constants(scene, test, counting);
     const uint32_t instances = scene.instances.met();
-    constants.push_back({"instance_count", instances <= 8 ? instances : 0});
+    const bool counted = instances <= device.counted_instances;
+    constants.push_back({"instance_count", counted ? instances : 0});
     const CubeLayout& layout = scene.cubes.layout();
     if (layout.by_pixel()) {
         constants.push_back({"batch", layout.batch == Batch::layers ? PEELRAY_FOUR_LAYERS : PEELRAY_ONE});
     } else {
-        constants.push_back({"bare_count", scene.instances.bare(scene.cubes.table)});
+        constants.push_back({"bare_count", counted ? scene.instances.bare(scene.cubes.table) : 0});
         constants.push_back({"deferred", device.immediate});
         constants.push_back({"refined", scene.cubes.refined});
         constants.push_back({"merging", scene.copied != nullptr});

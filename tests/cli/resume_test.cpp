@@ -102,7 +102,7 @@ TEST_F(Resume, AnInterruptSaysHowFarItGot) {
 }
 
 TEST_F(Resume, MoreFramesMayFollow) {
-    const Words options = {"--tracer", "none", "--frames"};
+    const Words options = {"--tracer", "cpu", "--frames"};
     const auto frames = [&](const std::string& range) {
         Words more = options;
         more.insert(more.end(), {range, "--resume"});
@@ -120,7 +120,7 @@ TEST_F(Resume, MoreFramesMayFollow) {
 }
 
 TEST_F(Resume, FramesOfUnknownOriginAreRenderedAgain) {
-    const Words options = {"--tracer", "none", "--frames", "0:3", "--aov", "depth"};
+    const Words options = {"--tracer", "cpu", "--frames", "0:3", "--aov", "depth"};
     ASSERT_EQ(sequence("f%d.png", options).status, 0);
     const auto whole = contents();
     Words resume = options;
@@ -140,21 +140,21 @@ TEST_F(Resume, FramesOfUnknownOriginAreRenderedAgain) {
     EXPECT_NE(lacking.out.find("1 frame of 0 to 2, 2 were there already"), std::string::npos) << lacking.out;
     EXPECT_TRUE(contents() == whole);
     // Other settings, without --resume: a new beginning, to which the old frames do not belong.
-    ASSERT_EQ(sequence("f%d.png", {"--tracer", "none", "--frames", "0:1", "--aov", "depth", "--floor"}).status, 0);
+    ASSERT_EQ(sequence("f%d.png", {"--tracer", "cpu", "--frames", "0:1", "--aov", "depth", "--floor"}).status, 0);
     const Outcome mixed =
-        sequence("f%d.png", {"--tracer", "none", "--frames", "0:3", "--aov", "depth", "--floor", "--resume"});
+        sequence("f%d.png", {"--tracer", "cpu", "--frames", "0:3", "--aov", "depth", "--floor", "--resume"});
     EXPECT_NE(mixed.out.find("2 frames of 0 to 2, 1 was there already"), std::string::npos) << mixed.out;
     EXPECT_NE(mixed.err.find("2 of the frames that are there"), std::string::npos) << mixed.err;
     const auto mixture = contents();
     remove_outputs();
-    ASSERT_EQ(sequence("f%d.png", {"--tracer", "none", "--frames", "0:3", "--aov", "depth", "--floor"}).status, 0);
+    ASSERT_EQ(sequence("f%d.png", {"--tracer", "cpu", "--frames", "0:3", "--aov", "depth", "--floor"}).status, 0);
     EXPECT_TRUE(contents() == mixture);
 }
 
 TEST_F(Resume, WhereAPictureIsItsAuxiliaryPicturesAre) {
     // The second frame's cannot be written: then it has no main picture either.
     fs::create_directory(out("f1.normal.exr"));
-    const Words options = {"--tracer", "none", "--frames", "0:3", "--aov", "depth,normal"};
+    const Words options = {"--tracer", "cpu", "--frames", "0:3", "--aov", "depth,normal"};
     const Outcome run = sequence("f%d.png", options);
     expect_refused_untouched(run, {"f1.normal.exr", "it is a folder"});
     EXPECT_TRUE(fs::exists(out("f0.png")));
@@ -174,7 +174,7 @@ TEST_F(Resume, OldTemporariesGo) {
     aged(".peelray-1-0.tmp.png", 25);
     aged(".peelray-1-1.tmp.png", 23);
     aged("peelray-1-0.tmp.png", 25);
-    ASSERT_EQ(sequence("f%d.png", {"--tracer", "none", "--frames", "0:1", "--resume"}).status, 0);
+    ASSERT_EQ(sequence("f%d.png", {"--tracer", "cpu", "--frames", "0:1", "--resume"}).status, 0);
     EXPECT_EQ(outputs(), (Words{".peelray-1-1.tmp.png", "f%d.png.json", "f0.png", "peelray-1-0.tmp.png"}));
 }
 
@@ -266,19 +266,19 @@ TEST_F(Resume, AnotherFileIsRefused) {
 }
 
 TEST_F(Resume, AManifestThatIsNone) {
-    const Words options = {"--frames", "0:1", "--tracer", "none", "--resume"};
+    const Words options = {"--frames", "0:1", "--tracer", "cpu", "--resume"};
     for (const std::string text : {"", "{", "[1]", "{}", "{\"manifest\": 2}", "null"}) {
         put("out/f%d.png.json", text);
         expect_refused_untouched(sequence("f%d.png", options), {"f%d.png.json is no manifest"});
         EXPECT_EQ(outputs(), Words{"f%d.png.json"});
     }
     // A new beginning replaces it.
-    ASSERT_EQ(sequence("f%d.png", {"--frames", "0:1", "--tracer", "none"}).status, 0);
+    ASSERT_EQ(sequence("f%d.png", {"--frames", "0:1", "--tracer", "cpu"}).status, 0);
     EXPECT_EQ(manifest()["manifest"], 1);
 }
 
 TEST_F(Resume, TheManifestKnowsEveryOptionThatShapesAPicture) {
-    ASSERT_EQ(sequence("f%d.png", {"--frames", "0:1", "--tracer", "none"}).status, 0);
+    ASSERT_EQ(sequence("f%d.png", {"--frames", "0:1", "--tracer", "cpu"}).status, 0);
     const auto json = manifest();
     for (const char* key : {"program", "commit", "device", "scene"}) EXPECT_TRUE(json[key].is_string()) << key;
     // An option that is in neither was forgotten.
@@ -320,7 +320,7 @@ TEST_F(Resume, ShardsMakeTheWhole) {
 
 TEST_F(Resume, AShardTakesItsPositionsInTheRange) {
     const auto shard = [&](const std::string& range, const std::string& part) {
-        return sequence("f%d.png", {"--frames", range, "--tracer", "none", "--shard", part});
+        return sequence("f%d.png", {"--frames", range, "--tracer", "cpu", "--shard", part});
     };
     expect_done(shard("3:8", "1/2"), {"f%d.png.json", "f4.png", "f6.png"});
     const Outcome none = shard("3:5", "2/4");
@@ -328,11 +328,11 @@ TEST_F(Resume, AShardTakesItsPositionsInTheRange) {
     EXPECT_NE(none.out.find("no frames: shard 2/4 of 2"), std::string::npos) << none.out;
     // Shards share their frames: one that is told otherwise than the others is refused, also without --resume.
     expect_refused_untouched(
-        sequence("f%d.png", {"--frames", "3:8", "--tracer", "none", "--shard", "0/2", "--spp", "2"}),
+        sequence("f%d.png", {"--frames", "3:8", "--tracer", "cpu", "--shard", "0/2", "--spp", "2"}),
         {"--spp was 1, is 2"});
     // Each goes on by itself.
     fs::remove(out("f6.png"));
-    const Outcome rest = sequence("f%d.png", {"--frames", "3:8", "--tracer", "none", "--shard", "1/2", "--resume"});
+    const Outcome rest = sequence("f%d.png", {"--frames", "3:8", "--tracer", "cpu", "--shard", "1/2", "--resume"});
     expect_done(rest, {"f%d.png.json", "f4.png", "f6.png"});
     EXPECT_NE(rest.out.find("1 frame of 3 to 7 (shard 1/2), 1 was there already"), std::string::npos) << rest.out;
 }

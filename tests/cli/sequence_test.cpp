@@ -160,7 +160,7 @@ TEST_F(SequenceTest, TheTurntableGoesRound) {
 
 TEST_F(SequenceTest, TheTurntableStandsUnlessToldOtherwise) {
     const auto times = [&](Words more) {
-        more.insert(more.end(), {"--turntable", "8", "--frames", "6:8", "--stats", out("s.json"), "--tracer", "none"});
+        more.insert(more.end(), {"--turntable", "8", "--frames", "6:8", "--stats", out("s.json"), "--tracer", "cpu"});
         const Outcome run = sequence("t%d.png", more);
         EXPECT_EQ(run.status, 0) << run.err;
         nlohmann::json times;
@@ -172,7 +172,7 @@ TEST_F(SequenceTest, TheTurntableStandsUnlessToldOtherwise) {
         return times;
     };
     EXPECT_EQ(times({}), nlohmann::json({nullptr, nullptr}));
-    expect_done(sequence("t%d.png", {"--turntable", "8", "--frames", "6:8", "--tracer", "none"}),
+    expect_done(sequence("t%d.png", {"--turntable", "8", "--frames", "6:8", "--tracer", "cpu"}),
                 {"s.json", "t%d.png.json", "t6.png", "t7.png"});
     EXPECT_EQ(times({"--time", "0.25"}), nlohmann::json({0.25, 0.25}));
     EXPECT_EQ(times({"--time", "0.25", "--animation", "grow"}), nlohmann::json({0.25, 0.25}));

@@ -19,7 +19,7 @@ class Video : public SequenceTest {
         return {{"PATH", in("bin") + ":/usr/bin:/bin"}};
     }
     Outcome video(const std::string& script, const Words& more = {}, const std::string& name = "v.mp4") const {
-        Words all = {"--frames", "0:3", "--tracer", "none"};
+        Words all = {"--frames", "0:3", "--tracer", "cpu"};
         all.insert(all.end(), more.begin(), more.end());
         return sequence(name, all, "moving.gltf", fake(script));
     }
@@ -66,7 +66,7 @@ TEST_F(Video, FfmpegGetsTheFramesAndTheSettings) {
         // The pixels of the same frames as pictures.
         const std::string bytes = get(in("bytes"));
         ASSERT_EQ(bytes.size(), 3u * 64 * 48 * 4);
-        ASSERT_EQ(sequence("f%d.png", {"--frames", "0:3", "--tracer", "none", "--fps", "12.5"}).status, 0);
+        ASSERT_EQ(sequence("f%d.png", {"--frames", "0:3", "--tracer", "cpu", "--fps", "12.5"}).status, 0);
         for (size_t k = 0; k < 3; k++) {
             const Image8 frame = read_ldr(out(fmt::format("f{}.png", k)));
             const std::string pixels = bytes_of(frame.pixels);
@@ -137,7 +137,7 @@ TEST_F(Video, WhatAVideoCannotDo) {
 TEST_F(Video, AnInterruptEndsFfmpegToo) {
     // It neither reads nor ends.
     const auto variables = fake("echo $$ > $FOLDER/pid.tmp; mv $FOLDER/pid.tmp $FOLDER/pid; exec sleep 60");
-    const Running running = start(words("v.mp4", {"--frames", "0:90", "--tracer", "none"}), variables);
+    const Running running = start(words("v.mp4", {"--frames", "0:90", "--tracer", "cpu"}), variables);
     ASSERT_TRUE(wait_for(in("pid")));
     const pid_t ffmpeg = std::stoi(get(in("pid")));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -156,7 +156,7 @@ TEST_F(Video, AnInterruptEndsFfmpegToo) {
 TEST_F(Video, ACtrlCIsForUs) {
     // A terminal sends it to the whole process group. It must not look like an ffmpeg that fails.
     const auto variables = fake("trap 'echo > $FOLDER/hit; exit 255' INT\necho > $FOLDER/started\ncat > /dev/null");
-    const Running running = start(words("v.mp4", {"--frames", "0:100000", "--tracer", "none"}), variables, "", true);
+    const Running running = start(words("v.mp4", {"--frames", "0:100000", "--tracer", "cpu"}), variables, "", true);
     ASSERT_TRUE(wait_for(in("started")));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     ::kill(-running.process, SIGINT);
@@ -200,7 +200,7 @@ TEST_F(Video, TheRealFfmpegOnAFullDisk) {
     // As good as full: files may have no more than 512 bytes. Left to itself ffmpeg says of a .webm that all is well.
     const auto variables = fake("ulimit -f 1\nPATH=/usr/bin:/bin exec ffmpeg \"$@\"");
     for (const std::string name : {"v.mp4", "v.webm"}) {
-        const Outcome run = sequence(name, {"--frames", "0:3", "--tracer", "none"}, "moving.gltf", variables);
+        const Outcome run = sequence(name, {"--frames", "0:3", "--tracer", "cpu"}, "moving.gltf", variables);
         expect_refused(run, 1, "ffmpeg failed (exit status 1)");
         EXPECT_NE(run.err.find("File too large"), std::string::npos) << run.err;
     }

@@ -4,6 +4,7 @@
 #include <scenes.h>
 
 #include "../gpu/device_fixture.h"
+#include "effort.h"
 #include "motion/animation.h"
 #include "render/renderer.h"
 
@@ -24,6 +25,17 @@ inline RenderSettings settings_for(const Camera& camera, uint32_t size = 64) {
 
 class PictureTest : public DeviceTest {
   protected:
+    /// One instance is counted, more are found in the hierarchy: variants of shaders are what takes time here. Those
+    /// for each number are traced by InstancesTest, by the program, and in `make test-long` here, too.
+    void SetUp() override {
+        DeviceTest::SetUp();
+        device().counted_instances = test::effort(1, 8);
+    }
+    void TearDown() override {
+        device().counted_instances = 8;
+        DeviceTest::TearDown();
+    }
+
     RenderResult render(const Stage& stage, const Environment& environment, const RenderSettings& settings) {
         return renderer_for(stage, environment)->render(settings);
     }
