@@ -41,8 +41,8 @@ struct PeelrayInstance {
 #define PEELRAY_BARE 0x80000000u
 #define PEELRAY_BARE_TRIANGLES 4u
 
-/// Of PeelrayInstance::tops: copies of the instance's triangles are in a cube that it shares with others, and it is not in
-/// the hierarchy; first_cell: added to the number of a triangle, that of its copy.
+/// Of PeelrayInstance::tops: copies of the instance's triangles are in a cube that it shares with others, and it is not
+/// in the hierarchy; first_cell: added to the number of a triangle, that of its copy.
 #define PEELRAY_MERGED 0x40000000u
 
 /// A box of the hierarchy over the instances, in the world; lower > upper: nothing.

@@ -356,6 +356,21 @@ uint32_t serving_resolution(uint64_t triangles, double longest, double inverse_e
     return uint32_t(std::clamp(std::ceil(voxels / 16), 1.0, 64.0)) * 16;
 }
 
+uint32_t Assembly::bodies_triangles() const {
+    uint32_t triangles = 0;
+    for (const Body& body : bodies) triangles += body.triangles;
+    return triangles;
+}
+
+Assembly Assembly::without_geometry() const {
+    Assembly out;
+    out.bodies = bodies;
+    out.fixed = fixed;
+    out.instances = instances;
+    out.shown = shown;
+    return out;
+}
+
 Assembly assemble(const Scene& scene, const Moment& moment, const Motion& motion) {
     return Assembler(scene, moment, motion).take();
 }

@@ -49,6 +49,11 @@ struct Assembly {
     bool generates = false;           ///< what is generated moves: Scene::generated
     std::vector<Piece> surfaces;      ///< of Scene::generated.waters, then of its cloths, while they move
     uint64_t shown = 0;               ///< triangles with all instances
+
+    /// Of all bodies, each once.
+    uint32_t bodies_triangles() const;
+    /// What is left when its triangles are on a device: bodies and instances.
+    Assembly without_geometry() const;
 };
 
 /// Edge of `triangles` triangles of `area` in all, taken as if they were equal: the root of a triangle's area. Above 0.

@@ -35,8 +35,11 @@ SequenceRun::SequenceRun(const RenderArguments& arguments, const Sequence& seque
     : sequence_(sequence), arguments_(at_first_frame(arguments, sequence)), workspace_(arguments_, print_note) {}
 
 MadePicture SequenceRun::make(uint32_t frame, const std::function<void(double)>& progress) {
+    RenderSettings settings = render_settings(arguments_);
+    // What nobody asks for is not measured.
+    settings.time_passes = settings.bodies = !arguments_.stats.empty();
     try {
-        return workspace_.render(render_settings(arguments_), sequence_.shot(frame), progress);
+        return workspace_.render(settings, sequence_.shot(frame), progress);
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {

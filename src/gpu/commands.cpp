@@ -257,7 +257,7 @@ void Commands::upload(const Image2D& image, std::span<const uint32_t> texels, ui
 
 /// On several cores where there is much: one alone copies less than the device sends.
 static void copy_out(const std::byte* from, std::byte* to, uint64_t bytes) {
-    constexpr uint64_t kPiece = 8 << 20;
+    constexpr uint64_t kPiece = 2 << 20;
     parallel_for((bytes + kPiece - 1) / kPiece, 1, [&](size_t i) {
         const uint64_t first = i * kPiece;
         std::memcpy(to + first, from + first, std::min(kPiece, bytes - first));

@@ -4,8 +4,7 @@
 
 namespace peelray {
 
-TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> points,
-                                 std::span<const glm::uvec3> indices)
+TriangleBuffers::TriangleBuffers(Device& device, std::span<const glm::vec3> points, std::span<const glm::uvec3> indices)
     : count(uint32_t(indices.size())), vertices(uint32_t(points.size())) {
     // Two bits of a sample's id hold its axis.
     if (indices.size() >= 1u << 30)

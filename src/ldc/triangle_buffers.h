@@ -11,8 +11,8 @@ namespace peelray {
 
 /// Triangles on the device, in the spaces of their bodies.
 struct TriangleBuffers {
-    Buffer positions;    ///< vec3 each, tightly packed
-    Buffer triangles;    ///< three uint32 indices each
+    Buffer positions;       ///< vec3 each, tightly packed
+    Buffer triangles;       ///< three uint32 indices each
     uint32_t count = 0;     ///< triangles, < 2^30
     uint32_t vertices = 0;  ///< behind them and behind the triangles there may be copies (MergedInstances)
     /// Where they have holes; must outlive this. Null: no material is masked.

@@ -26,9 +26,9 @@ glm::mat4 transform_of(const Assembly::Instance& instance, const std::vector<glm
     return instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset;
 }
 
-/// Those that are small and move by themselves or are not alone. If any of them moves, or anything deforms, their cube is built for every frame: then those
-/// that stand still are among them only where they are few. Mirrored ones show their triangles from the other side,
-/// which copies would not.
+/// Those that are small and move by themselves or are not alone. If any of them moves, or anything deforms, their cube
+/// is built for every frame: then those that stand still are among them only where they are few. Mirrored ones show
+/// their triangles from the other side, which copies would not.
 std::vector<uint32_t> choose(const Assembly& assembly, const std::vector<glm::mat4>& worlds, uint32_t most) {
     std::vector<uint32_t> chosen, shown(assembly.bodies.size());
     for (const Assembly::Instance& instance : assembly.instances) shown[instance.body]++;

@@ -52,7 +52,7 @@ void RayScene::record_translation(Commands& commands, const Buffer& hits, uint32
 
 TracerStats RayScene::stats(Commands& commands) const {
     TracerStats stats;
-    tracer_->describe(commands, stats);
+    tracer_->describe(commands, stats, true);
     return stats;
 }
 

@@ -12,6 +12,7 @@ struct RenderSettings : PictureSettings, TracerChoice {
     Visibility visibility = Visibility::automatic;
     uint32_t repeat = 1;      ///< frames to render; times are medians over them
     bool time_passes = true;  ///< else only the frame and its build: passes then do not wait for timestamps
+    bool bodies = true;       ///< the statistics say of each body what its cube is, which takes a look at the device
     bool counters = false;    ///< count what rays cost, which slows them: times then tell nothing; of Tracer::ldc
 
     bool operator==(const RenderSettings&) const = default;

@@ -43,22 +43,6 @@ void check_settings(const Device& device, const GpuScene& scene, const RenderSet
              setting::visibility);
 }
 
-/// What is left of an assembly when its triangles are on the device.
-Assembly without_geometry(const Assembly& from) {
-    Assembly out;
-    out.bodies = from.bodies;
-    out.fixed = from.fixed;
-    out.instances = from.instances;
-    out.shown = from.shown;
-    return out;
-}
-
-uint32_t triangles_of(const Assembly& assembly) {
-    uint32_t triangles = 0;
-    for (const Assembly::Body& body : assembly.bodies) triangles += body.triangles;
-    return triangles;
-}
-
 /// `samples`: as many stand for a pixel, each for its share.
 void describe_view(Frame& frame, const View& view, uint32_t height, uint32_t samples) {
     frame.eye = view.eye;
@@ -101,7 +85,7 @@ struct Renderer::Impl {
     Impl(Device& device, const Scene& source, const Moment& moment, const Assembly& assembly,
          const Environment& environment)
         : f(device, source, moment, assembly, environment),
-          assembly(without_geometry(assembly)),
+          assembly(assembly.without_geometry()),
           source(source),
           moment(moment),
           output(device) {
@@ -150,7 +134,7 @@ void Renderer::Impl::prepare(const RenderSettings& settings, bool open) {
 /// The tracer that the settings ask for, or none where neither an effect nor the media before what is seen need any;
 /// not yet built.
 void Renderer::Impl::prepare_tracer() {
-    f.settings.cubes = choose_automatically(triangles_of(assembly), f.settings);
+    f.settings.cubes = choose_automatically(assembly.bodies_triangles(), f.settings);
     TracerChoice choice = f.settings;
     if (choice.tracer == Tracer::khr) f.device.check_ray_tracing();
     if (choice.tracer != Tracer::cubemap && !needs_rays(f.settings, f.scene.has_blended) && !f.scene.layered &&
@@ -436,7 +420,7 @@ void Renderer::Impl::describe(RenderStats& stats) {
     stats.counted = f.counter != nullptr;
     if (f.counter) stats.costs = f.counter->sums();
     if (f.maps) stats.maps = f.maps->stats();
-    f.tracer->describe(f.commands, stats);
+    f.tracer->describe(f.commands, stats, f.settings.bodies || f.settings.cubes.hit == HitTest::tolerance);
     stats.choice = stats.cubes.bodies > 0 ? stats.cubes.choice : f.settings.cubes;
     stats.hit = stats.choice.hit;
 }

@@ -7,7 +7,7 @@ KeptPictures::Kept KeptPictures::described(const RenderSettings& settings, const
     Kept kept{settings, shot};
     RenderSettings& s = kept.settings;
     s.aovs = s.ray_setup = s.motion = s.moments = s.counters = false;
-    s.time_passes = true;
+    s.time_passes = s.bodies = true;
     s.repeat = 1;
     s.exposure = 0;
     s.tonemap = Tonemap::none;

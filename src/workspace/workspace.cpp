@@ -177,7 +177,8 @@ bool Workspace::may_note_culled() const {
 void Workspace::note_culled(const PictureSettings& settings, Picture& picture) {
     if (!may_note_culled()) return;
     const double seen = seen_share(picture);
-    if (seen > kMostSeenInNote) return;
+    if (seen > kMostSeenInNote || seen >= noted_.least_seen) return;
+    noted_.least_seen = seen / 2;
     if (picture.radiance.empty()) renderer_->add_radiance(picture);
     const std::string text = culled_note(seen, culled_share(scene_.scene(), scene_.geometry(), settings, picture));
     if (text.empty()) return;

@@ -100,11 +100,14 @@ class Workspace {
         bool uncaught = false;     ///< that no shadows fall on a floor that is there for them
         bool tolerance = false;    ///< that it is too small
         bool culled = false;       ///< that the camera is behind single-sided faces
-        bool cut = false;          ///< that rays end too early
-        bool caustics = false;     ///< that there are none, or not all
-        bool crowded = false;      ///< that rays are in too many media
-        bool bands = false;        ///< that memory is limited to so little that a picture is made in bands
-        ChoiceSet<HitTest> room;   ///< that these stand for what found no room
+        /// The least that was seen when it was looked at whether it is: that takes longer than a frame, and is done
+        /// again where only half as much is seen.
+        double least_seen = 1;
+        bool cut = false;         ///< that rays end too early
+        bool caustics = false;    ///< that there are none, or not all
+        bool crowded = false;     ///< that rays are in too many media
+        bool bands = false;       ///< that memory is limited to so little that a picture is made in bands
+        ChoiceSet<HitTest> room;  ///< that these stand for what found no room
     } noted_;
 };
 

@@ -81,7 +81,7 @@ void KhrTracer::shadow(Commands& commands, const ShadowRays& shadows) {
     record_khr_rays(commands, device_, pass, khr_bindings(structures_, bindings), shadows.rays.count, shadows.rays);
 }
 
-void KhrTracer::describe(Commands&, TracerStats& stats) const {
+void KhrTracer::describe(Commands&, TracerStats& stats, bool) const {
     stats.structures = structures_.stats();
     stats.update = update_;
 }

@@ -17,7 +17,7 @@ class KhrTracer : public RayTracer {
     void trace(Commands& commands, const RayQueue& queue, const Buffer& hits, const TraceQuery& query) override;
     void trace_layered(Commands& commands, const LayeredRays& rays) override;
     void shadow(Commands& commands, const ShadowRays& shadows) override;
-    void describe(Commands& commands, TracerStats& stats) const override;
+    void describe(Commands& commands, TracerStats& stats, bool bodies) const override;
 
   private:
     /// What shading reads, and the triangles themselves; of it what a pass uses.

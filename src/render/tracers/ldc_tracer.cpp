@@ -194,7 +194,7 @@ void LdcTracer::describe(Frame& frame) const {
     frame.block = choice().layout.block;
 }
 
-void LdcTracer::describe(Commands& commands, TracerStats& stats) const {
+void LdcTracer::describe(Commands& commands, TracerStats& stats, bool of_bodies) const {
     stats.cubes = cubes_->stats();
     stats.cubes.no_room = no_room_;
     if (merged_) {
@@ -206,7 +206,7 @@ void LdcTracer::describe(Commands& commands, TracerStats& stats) const {
         stats.cubes.no_room_hit = first_choice_.hit;
         stats.cubes.no_room_resolution = largest_resolution(assembly_, first_choice_, fixed_bodies_);
     }
-    stats.bodies = bodies().download(commands);
+    if (of_bodies) stats.bodies = bodies().download(commands);
     stats.shown = shown_;
     if (merged_) stats.shown.push_back(1);
     stats.rebuilt = rebuilt_;

@@ -28,7 +28,7 @@ class LdcTracer : public RayTracer {
     void trace_layered(Commands& commands, const LayeredRays& rays) override;
     void shadow(Commands& commands, const ShadowRays& shadows) override;
     void describe(Frame& frame) const override;
-    void describe(Commands& commands, TracerStats& stats) const override;
+    void describe(Commands& commands, TracerStats& stats, bool bodies) const override;
 
   private:
     TracedScene traced() const;

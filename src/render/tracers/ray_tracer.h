@@ -87,7 +87,8 @@ class RayTracer {
 
     /// What shaders are told about hits, in a picture's constants.
     virtual void describe(Frame&) const {}
-    virtual void describe(Commands&, TracerStats&) const {}
+    /// `bodies`: of each body, too. Submits then.
+    virtual void describe(Commands&, TracerStats&, bool /*bodies*/) const {}
 };
 
 /// The tracer that the choice asks for, not yet built; with `cubemap`, which traces no rays, the one that has none.
