@@ -254,9 +254,8 @@ inline void add_tracing(SettingList& list, TracingArguments& a) {
                  .of_cubes = true});
     add_refine(list, a.refine,
                {.group = group, .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones"});
-    add_merge(
-        list, a.merge,
-        {.group = group, .help = "with --hit exact, many objects of at most N triangles share a cube; 0: none do"});
+    add_merge(list, a.merge,
+              {.group = group, .help = "many objects of at most N triangles share a cube (--hit exact)"});
     add_setting(list, a.tolerance,
                 {.name = "tolerance",
                  .group = group,
