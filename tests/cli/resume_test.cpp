@@ -282,9 +282,9 @@ TEST_F(Resume, TheManifestKnowsEveryOptionThatShapesAPicture) {
     const auto json = manifest();
     for (const char* key : {"program", "commit", "device", "scene"}) EXPECT_TRUE(json[key].is_string()) << key;
     // An option that is in neither was forgotten.
-    const std::vector<std::string> shapeless = {"--help",     "--output",   "--stats",   "--frames",
-                                                "--shard",    "--resume",   "--repeat",  "--device",
-                                                "--validate", "--counters", "--preview", "--keep-partial"};
+    const std::vector<std::string> shapeless = {
+        "--help",   "--output",   "--stats",    "--frames",  "--shard",        "--resume",      "--repeat",
+        "--device", "--validate", "--counters", "--preview", "--keep-partial", "--memory-limit"};
     const std::string help = run({"render", "--help"}).out;
     const std::regex option("\n  (?:-.,)?(--[a-z-]+)");
     size_t count = 0;

@@ -48,7 +48,7 @@ TEST(Manifest, ChangesWithEverySettingThatChangesPictures) {
     }
     // A new setting comes to stand in the manifest, or here.
     EXPECT_EQ(others, (std::set<std::string>{"output", "repeat", "device", "validate", "frames", "shard", "resume",
-                                             "stats", "counters", "preview", "keep-partial"}));
+                                             "stats", "counters", "preview", "keep-partial", "memory-limit"}));
 }
 
 TEST(Manifest, WritesValuesAsRunsBegunEarlierDid) {

@@ -56,10 +56,10 @@ PictureStats traced_picture() {
 TEST(StatsJson, AllOfATracedPictureInOrder) {
     const Json json = picture_json(traced_picture());
     EXPECT_EQ(keys_of(json), (std::vector<std::string>{
-                                 "tracer",     "device", "kind",         "driver",           "api_version", "commit",
-                                 "image",      "camera", "samples",      "triangles",        "timed",       "frame_ms",
-                                 "build_ms",   "passes", "rays",         "mrays_per_second", "ldc",         "moved",
-                                 "visibility", "hit",    "memory_bytes", "memory",           "redone"}));
+                                 "tracer",   "device",     "kind",    "driver",           "api_version", "commit",
+                                 "image",    "camera",     "samples", "triangles",        "timed",       "frame_ms",
+                                 "build_ms", "passes",     "rays",    "mrays_per_second", "ldc",         "moved",
+                                 "bands",    "visibility", "hit",     "memory_bytes",     "memory",      "redone"}));
     EXPECT_EQ(json["tracer"], "ldc");
     EXPECT_EQ(json["api_version"], "1.3.250");
     EXPECT_EQ(json["image"], (Json{64, 48}));
