@@ -6,13 +6,11 @@
 #include <system_error>
 #include <utility>
 
+#include "base/elapsed.h"
+
 namespace peelray {
 
 using Clock = std::chrono::steady_clock;
-
-static double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 WorkerPool::WorkerPool(const Limits& limits) : limits_(limits) {}
 

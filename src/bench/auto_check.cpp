@@ -11,9 +11,7 @@ namespace peelray {
 static constexpr uint32_t kWarmUpOfChoice = 3;
 
 AutoCheck::AutoCheck(const BenchSettings& settings, Notes notes)
-    : settings_(settings),
-      notes_(std::move(notes)),
-      device_(DeviceOptions{settings.device.device, settings.device.validate, settings.device.most_held()}) {
+    : settings_(settings), notes_(std::move(notes)), device_(device_options(settings.device)) {
     check_timestamps(device_);
 }
 

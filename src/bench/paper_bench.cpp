@@ -215,7 +215,7 @@ PaperBench::PaperBench(const BenchSettings& settings, Notes notes)
       notes_(std::move(notes)),
       combinations_(choose_combinations(settings)),
       scenes_(choose_scenes(settings)) {
-    const Device device({settings.device.device, settings.device.validate, settings.device.most_held()});
+    const Device device(device_options(settings.device));
     check_timestamps(device);
     machine_ = machine_of(device);
 }

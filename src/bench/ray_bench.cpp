@@ -193,7 +193,7 @@ RayBench::RayBench(const BenchSettings& settings, Notes notes)
     : settings_(settings),
       notes_(std::move(notes)),
       kinds_(sorted(settings.rays)),
-      device_(DeviceOptions{settings.device.device, settings.device.validate, settings.device.most_held()}) {
+      device_(device_options(settings.device)) {
     check_timestamps(device_);
     // Of planar hits, auto is too fine for a software device in a hurry.
     if (settings.quick)

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/cores.h"
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "bench/scenes.h"
 #include "cli/bench.h"
@@ -15,6 +16,7 @@
 #include "cli/sequence_run.h"
 #include "cli/stats_json.h"
 #include "cli/version.h"
+#include "cli/video.h"
 #include "image/image.h"
 #include "image/y4m.h"
 
@@ -95,7 +97,7 @@ class SequenceBench {
         const double before = run.render_seconds();
         const auto start = SequenceClock::now();
         run.render(sequence_.numbers(), pool, SequenceRun::Rest::dropped, tasks_of);
-        way.seconds = std::chrono::duration<double>(SequenceClock::now() - start).count();
+        way.seconds = seconds_since(start);
         way.rendering = run.render_seconds() - before;
         way.waiting = pool.times().waited;
     }
@@ -142,7 +144,7 @@ class SequenceBench {
                 way.encoding([&] { return encode(Image8View(picture_.width, picture_.height, picture_.encoded)); });
             });
         pool.finish();
-        way.seconds = std::chrono::duration<double>(SequenceClock::now() - start).count();
+        way.seconds = seconds_since(start);
     }
 
     std::string renderer_name() { return SequenceRun(arguments_, sequence_).renderer_name(); }
@@ -191,8 +193,7 @@ void measure(const BenchArguments& a, const std::string& scene, const fs::path& 
 }  // namespace
 
 void run_sequence_bench(const BenchArguments& a) {
-    if (a.size.x % 2 || a.size.y % 2)
-        fail("a video of {}x{} pixels is impossible, width and height must be even (--size)", a.size.x, a.size.y);
+    check_video_size(a.size);
     const ScratchFolder folder;
     const std::string renderer = SequenceBench(a, a.scenes.front()).renderer_name();
     BenchOutput output(a, {{"benchmark", "sequence"},

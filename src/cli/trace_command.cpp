@@ -140,7 +140,7 @@ void run_trace(const TraceArguments& a) {
     settings.tracer = tracer;
     settings.structures = StructureUpdate::keep;
 
-    Device device({a.device.device, a.device.validate, a.device.most_held()});
+    Device device(device_options(a.device));
     settings.cubes = choose_automatically(uint32_t(geometry.triangles.size()), settings);
     RayScene traced_scene = [&] {
         const MemoryPart part(device, "scene");

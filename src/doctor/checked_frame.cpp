@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "image/metrics.h"
 #include "workspace/workspace.h"
@@ -24,10 +25,6 @@ PictureArguments checked_picture(Tracer tracer, const std::string& device) {
 
 Image8 image_of(const Picture& picture) {
     return {picture.width, picture.height, picture.encoded};
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace

@@ -22,10 +22,6 @@ uint32_t most_triangles(const CubeChoice& cubes) {
     return possible ? cubes.merge.value_or(kMerged) : 0;
 }
 
-glm::mat4 transform_of(const Assembly::Instance& instance, const std::vector<glm::mat4>& worlds) {
-    return instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset;
-}
-
 /// Those that are small and move by themselves or are not alone. If any of them moves, or anything deforms, their cube
 /// is built for every frame: then those that stand still are among them only where they are few. Mirrored ones show
 /// their triangles from the other side, which copies would not.
@@ -39,7 +35,7 @@ std::vector<uint32_t> choose(const Assembly& assembly, const std::vector<glm::ma
         const uint32_t triangles = assembly.bodies[instance.body].triangles;
         if (instance.body >= assembly.fixed || triangles > most) continue;
         if (!instance.moves && shown[instance.body] == 1) continue;
-        if (glm::determinant(glm::mat3(transform_of(instance, worlds))) < 0) continue;
+        if (glm::determinant(glm::mat3(world_of(instance, worlds))) < 0) continue;
         chosen.push_back(i);
         anything_moves |= instance.moves;
         still += instance.moves ? 0 : triangles;
@@ -131,7 +127,7 @@ void MergedInstances::add(const Assembly& assembly, const std::vector<glm::mat4>
     moves_ |= from.moves;
     body_.triangles += body.triangles;
     body_.vertices += body.vertices;
-    const glm::mat4 to_world = transform_of(from, worlds);
+    const glm::mat4 to_world = world_of(from, worlds);
     for (int corner = 0; corner < 8; corner++) {
         const glm::bvec3 upper(corner & 1, corner & 2, corner & 4);
         const auto p = glm::vec3(to_world * glm::vec4(glm::mix(body.lower, body.upper, upper), 1));

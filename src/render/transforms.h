@@ -21,13 +21,17 @@ inline std::vector<InstanceInfo> instance_infos(const Assembly& assembly) {
     return infos;
 }
 
+/// Where an instance stands; `worlds`: of all nodes (Moment::worlds).
+inline glm::mat4 world_of(const Assembly::Instance& instance, const std::vector<glm::mat4>& worlds) {
+    return instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset;
+}
+
 /// Where the instances stand; `worlds`: of all nodes (Moment::worlds).
 inline std::vector<GpuTransform> transforms_of(const std::vector<Assembly::Instance>& instances,
                                                const std::vector<glm::mat4>& worlds) {
     std::vector<GpuTransform> transforms;
     for (const Assembly::Instance& instance : instances)
-        transforms.push_back(
-            gpu_transform(instance.node < 0 ? instance.offset : worlds[size_t(instance.node)] * instance.offset));
+        transforms.push_back(gpu_transform(world_of(instance, worlds)));
     return transforms;
 }
 

@@ -217,24 +217,26 @@ inline void add_block(SettingList& list, glm::uvec2& block, SettingInfo info) {
                 [](const glm::uvec2& value) { return std::optional(print_text(value)); });
 }
 
+/// A number of the cubes', or that it is chosen.
+inline void add_automatic(SettingList& list, std::optional<uint32_t>& number, SettingInfo info) {
+    info.form = "auto|N";
+    info.none = "auto";
+    info.of_cubes = true;
+    add_setting(list, number, std::move(info));
+}
+
 inline void add_refine(SettingList& list, std::optional<uint32_t>& refine, SettingInfo info) {
     info.name = "refine";
-    info.form = "auto|N";
     info.expected = "auto or a number of samples from 1 up";
-    info.none = "auto";
     info.limits = kRefineLimits;
-    info.of_cubes = true;
-    add_setting(list, refine, std::move(info));
+    add_automatic(list, refine, std::move(info));
 }
 
 inline void add_merge(SettingList& list, std::optional<uint32_t>& merge, SettingInfo info) {
     info.name = "merge";
-    info.form = "auto|N";
     info.expected = "auto or a number of triangles from 0 up";
-    info.none = "auto";
     info.limits = kMergeLimits;
-    info.of_cubes = true;
-    add_setting(list, merge, std::move(info));
+    add_automatic(list, merge, std::move(info));
 }
 
 inline constexpr Limits kToleranceLimits{
@@ -242,16 +244,13 @@ inline constexpr Limits kToleranceLimits{
 
 inline void add_tracing(SettingList& list, TracingArguments& a) {
     const std::string group = "Tracing";
-    add_setting(list, a.ldc,
-                {.name = "ldc",
-                 .group = group,
-                 .help = "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; "
-                         "smaller parts get fewer; auto: by the number of triangles of each",
-                 .form = "auto|N",
-                 .expected = "auto or a number from 16 to 2048",
-                 .none = "auto",
-                 .limits = kResolutionLimits,
-                 .of_cubes = true});
+    add_automatic(list, a.ldc,
+                  {.name = "ldc",
+                   .group = group,
+                   .help = "voxels along the longest side of the largest part that has a cube of its own, 16 to 2048; "
+                           "smaller parts get fewer; auto: by the number of triangles of each",
+                   .expected = "auto or a number from 16 to 2048",
+                   .limits = kResolutionLimits});
     add_refine(list, a.refine,
                {.group = group, .help = "with --hit exact, voxels of more than N samples become 4x4x4 finer ones"});
     add_merge(list, a.merge,
@@ -420,9 +419,6 @@ struct DeviceArguments {
     std::string device;
     bool validate = false;
     std::optional<uint32_t> memory_limit;  ///< MiB; none: whatever the device has
-
-    /// Bytes; 0: none.
-    uint64_t most_held() const { return uint64_t(memory_limit.value_or(0)) << 20; }
 };
 
 inline void add_device(SettingList& list, DeviceArguments& a) {

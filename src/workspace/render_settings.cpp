@@ -2,6 +2,14 @@
 
 namespace peelray {
 
+DeviceOptions device_options(const DeviceArguments& a) {
+    DeviceOptions options;
+    options.select = a.device;
+    options.validate = a.validate;
+    options.memory_limit = uint64_t(a.memory_limit.value_or(0)) << 20;
+    return options;
+}
+
 void choose_hit(RenderSettings& settings, std::optional<HitTest> hit) {
     settings.hit_auto = !hit;
     settings.cubes.hit = hit.value_or(HitTest::exact);

@@ -6,6 +6,8 @@
 
 namespace peelray {
 
+DeviceOptions device_options(const DeviceArguments& arguments);
+
 /// All but the camera and its bounds, which are the scene's.
 RenderSettings render_settings(const PictureArguments& arguments);
 

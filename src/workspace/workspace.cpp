@@ -34,8 +34,7 @@ Workspace::Workspace(const PictureArguments& settings, Notes notes)
 Workspace::~Workspace() = default;
 
 Device& Workspace::device() {
-    const DeviceArguments& a = settings_.device;
-    if (!device_) device_ = std::make_unique<Device>(DeviceOptions{a.device, a.validate, a.most_held()});
+    if (!device_) device_ = std::make_unique<Device>(device_options(settings_.device));
     return *device_;
 }
 

@@ -1,0 +1,13 @@
+// How long something takes.
+#pragma once
+
+#include <chrono>
+
+namespace peelray {
+
+/// By a clock that never stands still or goes back.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace peelray
